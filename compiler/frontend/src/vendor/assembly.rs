@@ -84,7 +84,26 @@ impl Chunk {
     }
 }
 
+/// How much of a text there was.
+#[derive(Clone, Copy, Debug)]
+pub struct Mark {
+    text: usize,
+    pieces: usize,
+    problems: usize,
+}
+
 impl Assembly {
+    pub fn mark(&self) -> Mark {
+        Mark { text: self.text.len(), pieces: self.pieces.len(), problems: self.problems.len() }
+    }
+
+    /// Leaves out what was written, and what was wrong, after a mark.
+    pub fn rewind(&mut self, mark: Mark) {
+        self.text.truncate(mark.text);
+        self.pieces.truncate(mark.pieces);
+        self.problems.truncate(mark.problems);
+    }
+
     /// Takes what the chunks of the file hold.
     pub fn copy(&mut self, file: &str, chunks: &[Chunk]) {
         for Chunk { place, says } in chunks {

@@ -102,7 +102,7 @@ fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element
             "Property" => What::Property,
             "GetAccessor" => What::Get,
             "SetAccessor" => What::Set,
-            "actions" | "addData" | "data" => {
+            "actions" | "Actions" | "Methods" | "Properties" | "addData" | "data" => {
                 parts(file, reader, &mut unit)?;
                 continue;
             }

@@ -3,10 +3,12 @@
 
 mod data_block;
 mod token;
+mod words;
 
 use super::assembly::{Assembly, Chunk, Trouble};
 use core::ops::Range;
 use rustc_hash::FxHashMap;
+use staunch_ir::Elementary;
 use token::{Kind, Token};
 
 /// Heads of blocks, as the language has them, and how they end in Structured Text.
@@ -135,7 +137,14 @@ impl<'t> Scl<'t> {
 
     /// A name as Structured Text has it.
     fn name(&self, at: usize) -> String {
-        token::name(self.text(at))
+        words::legal(token::name(self.text(at)))
+    }
+
+    /// That of a block, a type or a data block: a variable may be called as a type of the language, these may not.
+    fn global_name(&self, at: usize) -> String {
+        let name = self.name(at);
+        let is_quoted = self.token(at).is_some_and(|it| it.kind == Kind::Quoted);
+        if is_quoted && Elementary::named(&name).is_some() { name + "_" } else { name }
     }
 
     fn block(&mut self) {
@@ -147,7 +156,7 @@ impl<'t> Scl<'t> {
         }
         let head = self.place(self.at);
         self.replace(head, block.1);
-        let (name, place) = (self.name(self.at + 1), self.place(self.at + 1));
+        let (name, place) = (self.global_name(self.at + 1), self.place(self.at + 1));
         if block.0 == "ORGANIZATION_BLOCK" && !["main", "ob1"].contains(&name.to_ascii_lowercase().as_str()) {
             let message = format!("the source does not say which event starts `{name}`");
             self.refuse(place.start..place.start, message);
@@ -255,8 +264,10 @@ impl<'t> Scl<'t> {
                 self.replace(place, &name);
             }
             Kind::Quoted => {
-                let name = self.name(at);
-                if !self.is_body && self.declares(at) {
+                let is_declared = !self.is_body && self.declares(at);
+                let is_member = after_dot || is_declared || self.is_given(at);
+                let name = if is_member { self.name(at) } else { self.global_name(at) };
+                if is_declared {
                     self.locals.insert(name.to_ascii_lowercase(), String::new());
                 }
                 let is_hidden = !after_dot && self.locals.contains_key(&name.to_ascii_lowercase());
@@ -283,8 +294,9 @@ impl<'t> Scl<'t> {
                 } else {
                     self.word(at, place.clone());
                 }
-                if !self.text(at).is_ascii() {
-                    let name = self.name(at);
+                let is_member = after_dot || if self.is_body { self.is_given(at) } else { self.declares(at) };
+                let name = if is_member { self.name(at) } else { token::name(self.text(at)) };
+                if name != self.text(at) && self.copied < place.end {
                     self.replace(place, &name);
                 }
             }
@@ -390,6 +402,11 @@ impl<'t> Scl<'t> {
     fn declares(&self, at: usize) -> bool {
         let colon = self.after(at);
         self.text(colon) == ":" && self.text(colon + 1) != "="
+    }
+
+    /// Whether a name is before the value that it is given: `"type" := 3`, `to => #n`.
+    fn is_given(&self, at: usize) -> bool {
+        matches!((self.text(at + 1), self.text(at + 2)), (":", "=") | ("=", ">"))
     }
 
     /// The token after a name and what is noted of it.

@@ -1,9 +1,11 @@
 //! XML, an element after the other, with the places of all that is in it. Entities that a document declares
 //! are not known: none is expanded, and what uses one is an error.
 
+mod well_formed;
+
 use super::assembly::{Chunk, Says};
 use core::ops::Range;
-use quick_xml::events::{BytesRef, BytesStart, Event};
+use quick_xml::events::{BytesStart, Event};
 
 /// Elements that lie deeper are no program's.
 const DEEPEST: usize = 1000;
@@ -40,6 +42,8 @@ pub struct Reader<'t> {
     is_empty: bool,
     /// The root was opened.
     has_root: bool,
+    /// What is wrong with the root's tag: what kind of file it is, is seen by its name all the same.
+    wrong_root: Option<Broken>,
     last: Range<usize>,
 }
 
@@ -48,12 +52,15 @@ impl<'t> Reader<'t> {
     pub fn new(text: &'t str) -> Option<Self> {
         let rest = text.trim_start().strip_prefix('<')?;
         let begins = rest.starts_with(|it: char| it == '?' || it == '!' || it.is_ascii_alphabetic());
+        let mut inner = quick_xml::Reader::from_str(text);
+        inner.config_mut().check_comments = true;
         begins.then(|| Self {
             text,
-            inner: quick_xml::Reader::from_str(text),
+            inner,
             open: Vec::new(),
             is_empty: false,
             has_root: false,
+            wrong_root: None,
             last: 0..0,
         })
     }
@@ -71,6 +78,9 @@ impl<'t> Reader<'t> {
 
     /// What comes next; `None` at the end of the file.
     pub fn part(&mut self) -> Result<Option<Part<'t>>, Broken> {
+        if let Some(broken) = self.wrong_root.take() {
+            return Err(broken);
+        }
         if std::mem::take(&mut self.is_empty) {
             self.open.pop();
             return Ok(Some(Part::Close));
@@ -91,12 +101,15 @@ impl<'t> Reader<'t> {
                     self.open.pop();
                     return Ok(Some(Part::Close));
                 }
-                Event::Text(_) => return Ok(Some(Part::Text(Chunk::verbatim(place)))),
+                Event::Text(_) => {
+                    well_formed::text(self.text, &place)?;
+                    return Ok(Some(Part::Text(Chunk::verbatim(place))));
+                }
                 Event::CData(_) => {
                     let place = place.start + "<![CDATA[".len()..place.end - "]]>".len();
                     return Ok(Some(Part::Text(Chunk::verbatim(place))));
                 }
-                Event::GeneralRef(name) => return symbol(&name, place).map(Some),
+                Event::GeneralRef(name) => return self.symbol(&name, place).map(Some),
                 Event::Eof => {
                     return match self.open.pop() {
                         Some(place) => Err(Broken { place, why: "this element is not closed".to_owned() }),
@@ -146,6 +159,10 @@ impl<'t> Reader<'t> {
         if self.open.len() > DEEPEST {
             return Err(Broken { place, why: format!("elements are nested more than {DEEPEST} deep") });
         }
+        match well_formed::tag(self.text, &place).map_err(Broken::from) {
+            Err(broken) if self.open.len() == 1 => self.wrong_root = Some(broken),
+            checked => checked?,
+        }
         let tag_text = &self.text[place.clone()];
         let length = tag.name().as_ref().len();
         let name = &tag_text[1..=length];
@@ -179,8 +196,20 @@ impl<'t> Reader<'t> {
 
     fn broken(&self, why: &str) -> Broken {
         let at = usize::try_from(self.inner.error_position()).unwrap_or(usize::MAX).min(self.text.len());
-        let end = self.text[at..].find(['\n', '\r']).map_or(self.text.len(), |it| at + it);
-        Broken { place: at..end, why: why.to_owned() }
+        well_formed::end(self.text, at, why).into()
+    }
+
+    fn symbol(&self, name: &str, place: Range<usize>) -> Result<Part<'t>, Broken> {
+        match well_formed::character(name) {
+            Some(symbol) => Ok(Part::Text(Chunk { place, says: Says::Symbol(symbol) })),
+            None => Err(well_formed::unknown(self.text, place).into()),
+        }
+    }
+}
+
+impl From<(Range<usize>, String)> for Broken {
+    fn from((place, why): (Range<usize>, String)) -> Self {
+        Self { place, why }
     }
 }
 
@@ -211,20 +240,5 @@ impl<'t> Element<'t> {
             Ok(std::borrow::Cow::Owned(text)) => Some(Chunk::words(text, &place)),
             Ok(std::borrow::Cow::Borrowed(_)) | Err(_) => Some(Chunk::verbatim(place)),
         }
-    }
-}
-
-fn symbol<'t>(name: &BytesRef<'_>, place: Range<usize>) -> Result<Part<'t>, Broken> {
-    let symbol = match &**name {
-        "lt" => Some('<'),
-        "gt" => Some('>'),
-        "amp" => Some('&'),
-        "quot" => Some('"'),
-        "apos" => Some('\''),
-        _ => name.resolve_char_ref().ok().flatten(),
-    };
-    match symbol {
-        Some(symbol) => Ok(Part::Text(Chunk { place, says: Says::Symbol(symbol) })),
-        None => Err(Broken { place, why: "an entity that XML itself does not have".to_owned() }),
     }
 }

@@ -2,7 +2,7 @@
 //! its variable, `JSR(Fill)` as `Fill()`, and a call of an Add-On Instruction, `Valve(valve_1, open, closed)`, as one of
 //! its tag: `valve_1(EnableIn := TRUE, Open := open, Closed => closed)`.
 
-use super::super::assembly::{Assembly, Chunk, Says, Trouble};
+use super::super::assembly::{Assembly, Chunk, Mark, Says, Trouble};
 use super::names::{Names, Operand, Scope, key, legal, plain};
 use super::service::controller_service;
 use core::ops::Range;
@@ -45,9 +45,18 @@ struct Writer<'a, 'o> {
 
 /// A call of an Add-On Instruction that is open.
 struct Call<'a> {
-    operands: core::slice::Iter<'a, Operand>,
+    name: &'a str,
+    /// Its name in the file.
+    place: Range<usize>,
+    /// What was written before it.
+    mark: Option<Mark>,
+    /// What it takes after its tag.
+    operands: &'a [Operand],
+    /// How many are given, with its tag.
+    given: usize,
+    /// Where the first begins that is one too many.
+    surplus: Option<usize>,
     depth: usize,
-    has_operands: bool,
 }
 
 /// A piece of a line, and what is written for it.
@@ -56,8 +65,8 @@ enum Piece {
     Words(String),
     /// Why it is refused; it is left out.
     Refused(String),
-    /// Why it is refused; it is kept, so that what is around it can be read.
-    Kept(String),
+    /// It ends a call that has other operands than its instruction takes: why the call is refused, and where.
+    Miscounted(Mark, String, Range<usize>),
     /// Why it is refused, and what is read in its place.
     Instead(String, &'static str),
 }
@@ -69,31 +78,39 @@ impl<'a> Writer<'a, '_> {
         let mut from = 0;
         let mut at = 0;
         while at < text.len() {
-            let (length, piece) = self.token(text, at);
+            let (length, piece) = self.token(text, at, place.start + at);
             let token = at..at + length.max(1);
             at = token.end;
-            let copied = match &piece {
-                Piece::Itself => continue,
-                Piece::Kept(_) => token.end,
-                Piece::Words(_) | Piece::Refused(_) | Piece::Instead(..) => token.start,
-            };
-            self.copy(&place, from..copied);
-            let token = place.start + token.start..place.start + token.end;
-            let (message, words) = match piece {
-                Piece::Itself => (None, String::new()),
-                Piece::Words(words) => (None, words),
-                Piece::Refused(message) | Piece::Kept(message) => (Some(message), String::new()),
-                Piece::Instead(message, words) => (Some(message), words.to_owned()),
-            };
-            if let Some(message) = message {
-                self.out.problem(Trouble::NotSupported, message, &token);
+            if matches!(piece, Piece::Itself) {
+                continue;
             }
-            if !words.is_empty() {
-                self.out.write(&words, &token);
-            }
+            self.copy(&place, from..token.start);
+            self.piece(piece, &(place.start + token.start..place.start + token.end));
             from = at;
         }
         self.copy(&place, from..text.len());
+    }
+
+    fn piece(&mut self, piece: Piece, token: &Range<usize>) {
+        let (message, words) = match piece {
+            Piece::Itself => return,
+            Piece::Miscounted(mark, message, place) => {
+                self.out.rewind(mark);
+                return self.out.problem(Trouble::Odd, message, &place);
+            }
+            Piece::Words(words) => (None, words),
+            Piece::Refused(message) => (Some(message), String::new()),
+            Piece::Instead(message, words) => (Some(message), words.to_owned()),
+        };
+        if let Some(call) = self.calls.last_mut() {
+            call.mark.get_or_insert_with(|| self.out.mark());
+        }
+        if let Some(message) = message {
+            self.out.problem(Trouble::NotSupported, message, token);
+        }
+        if !words.is_empty() {
+            self.out.write(&words, token);
+        }
     }
 
     fn copy(&mut self, place: &Range<usize>, part: Range<usize>) {
@@ -103,8 +120,8 @@ impl<'a> Writer<'a, '_> {
         }
     }
 
-    /// The length of what begins at a byte of a line, and what is written for it.
-    fn token(&mut self, text: &str, at: usize) -> (usize, Piece) {
+    /// The length of what begins at a byte of a line, which is at `place` of the file, and what is written for it.
+    fn token(&mut self, text: &'a str, at: usize, place: usize) -> (usize, Piece) {
         let rest = &text[at..];
         if let Some(close) = self.comment {
             let end = rest.find(close).map(|it| it + close.len());
@@ -136,8 +153,8 @@ impl<'a> Writer<'a, '_> {
                 self.depth += 1;
                 (1, Piece::Itself)
             }
-            b')' | b']' => (1, self.close()),
-            b',' => (1, self.comma()),
+            b')' | b']' => (1, self.close(place)),
+            b',' => (1, self.comma(rest, place)),
             b'.' => {
                 self.after_dot = true;
                 (1, Piece::Itself)
@@ -147,7 +164,7 @@ impl<'a> Writer<'a, '_> {
                 let length = word(rest, "_");
                 (length, legal(&rest[..length]).map_or(Piece::Itself, Piece::Words))
             }
-            b'A'..=b'Z' | b'a'..=b'z' | b'_' => self.name(rest),
+            b'A'..=b'Z' | b'a'..=b'z' | b'_' => self.name(rest, place),
             b' ' | b'\t' => {
                 self.after_dot = after_dot;
                 (1, Piece::Itself)
@@ -156,7 +173,7 @@ impl<'a> Writer<'a, '_> {
         }
     }
 
-    fn name(&mut self, rest: &str) -> (usize, Piece) {
+    fn name(&mut self, rest: &'a str, place: usize) -> (usize, Piece) {
         let name = &rest[..word(rest, "_")];
         let after = rest[name.len()..].trim_start();
         let scope = self.logic.scope;
@@ -171,7 +188,15 @@ impl<'a> Writer<'a, '_> {
             let open = rest.len() - after.len() + 1;
             if let Some(operands) = self.logic.names.instructions.get(&key(name)) {
                 self.depth += 1;
-                self.calls.push(Call { operands: operands.iter(), depth: self.depth, has_operands: false });
+                self.calls.push(Call {
+                    name,
+                    place: place..place + name.len(),
+                    mark: None,
+                    operands,
+                    given: usize::from(!rest[open..].trim_start().starts_with(')')),
+                    surplus: None,
+                    depth: self.depth,
+                });
                 return (open, Piece::Words(String::new()));
             }
             if let Some(close) = closing(&rest[open..]) {
@@ -227,28 +252,51 @@ impl<'a> Writer<'a, '_> {
         }
     }
 
-    fn close(&mut self) -> Piece {
+    fn close(&mut self, place: usize) -> Piece {
         let call = self.calls.pop_if(|it| it.depth == self.depth);
         self.depth = self.depth.saturating_sub(1);
         match call {
-            Some(mut call) => match call.operands.next() {
-                Some(it) => Piece::Kept(format!("the operand `{}` is left out", it.name)),
-                None if call.has_operands => Piece::Itself,
-                None => Piece::Words("(EnableIn := TRUE)".to_owned()),
-            },
-            None => Piece::Itself,
+            Some(call) if call.given != call.operands.len() + 1 => call.miscounted(self.logic.file, place),
+            Some(Call { given: 1, .. }) => Piece::Words("(EnableIn := TRUE)".to_owned()),
+            Some(_) | None => Piece::Itself,
         }
     }
 
-    fn comma(&mut self) -> Piece {
+    fn comma(&mut self, rest: &str, place: usize) -> Piece {
         let depth = self.depth;
         let Some(call) = self.calls.last_mut().filter(|it| it.depth == depth) else { return Piece::Itself };
-        let before = if core::mem::replace(&mut call.has_operands, true) { ", " } else { "(EnableIn := TRUE, " };
-        Piece::Words(match call.operands.next() {
-            Some(it) => format!("{before}{} {} ", it.name, if it.is_output { "=>" } else { ":=" }),
-            // No parameter has such a name: one operand too many is reported.
-            None => format!("{before}One_more := "),
-        })
+        let before = if call.given > 1 { ", " } else { "(EnableIn := TRUE, " };
+        let operand = call.operands.get(call.given.saturating_sub(1));
+        call.given += 1;
+        match operand {
+            Some(it) => Piece::Words(format!("{before}{} {} ", it.name, if it.is_output { "=>" } else { ":=" })),
+            None => {
+                let after = rest[1..].trim_start();
+                call.surplus.get_or_insert(place + rest.len() - after.len());
+                Piece::Itself
+            }
+        }
+    }
+}
+
+impl Call<'_> {
+    /// What is said of it where it ends.
+    fn miscounted(&self, file: &str, end: usize) -> Piece {
+        let names: String = self.operands.iter().map(|it| format!(", `{}`", it.name)).collect();
+        let (name, given, takes) = (self.name, self.given, self.operands.len() + 1);
+        let order = if names.is_empty() { "" } else { ", in this order" };
+        let many = if given == 1 { "operand" } else { "operands" };
+        let message =
+            format!("`{name}` takes a tag of the type `{name}`{names}{order}: {given} {many} in place of {takes}");
+        let place = match self.surplus {
+            Some(surplus) if !file[surplus..end].contains(['\n', '\r']) => surplus..end,
+            _ if !file[self.place.start..end].contains(['\n', '\r']) => self.place.start..end + 1,
+            _ => self.place.clone(),
+        };
+        match self.mark {
+            Some(mark) => Piece::Miscounted(mark, message, place),
+            None => Piece::Itself,
+        }
     }
 }
 

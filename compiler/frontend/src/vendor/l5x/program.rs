@@ -161,10 +161,12 @@ fn rungs(file: &str, reader: &mut Reader<'_>, place: Range<usize>) -> Result<Bod
     while open > 0 {
         match reader.part()? {
             Some(Part::Open(element)) if element.name == "Text" => {
-                let text = reader.content("")?;
-                only_calls &= text.iter().all(|it| only_calls_a_routine(&file[it.place.clone()]));
-                chunks.extend(text);
-                chunks.push(Chunk::words("\n", &reader.last()));
+                for text in reader.content("")? {
+                    match calls(&file[text.place.clone()]) {
+                        Some(calls) => chunks.extend(calls.into_iter().flat_map(|it| statement(&text.place, it))),
+                        None => only_calls = false,
+                    }
+                }
             }
             Some(Part::Open(element)) if element.name == "Rung" => open += 1,
             Some(Part::Open(_)) => reader.skip()?,
@@ -176,11 +178,41 @@ fn rungs(file: &str, reader: &mut Reader<'_>, place: Range<usize>) -> Result<Bod
     Ok(if only_calls { Body::Text(chunks) } else { Body::Other("a ladder diagram (RLL), which is no text", place) })
 }
 
-/// `JSR(Fill,0);`, `NOP();`, or nothing.
-fn only_calls_a_routine(rung: &str) -> bool {
-    let rung = rung.trim().trim_end_matches(';');
-    let operands = rung.strip_prefix("JSR(").and_then(|it| it.strip_suffix(')'));
-    rung.is_empty() || rung == "NOP()" || operands.is_some_and(|it| !it.contains(['(', ')']))
+/// The calls of a rung that has nothing else, in their order: `JSR(Fill,0)JSR(Drain,0);`, `[JSR(Fill,0) ,JSR(Drain,0) ];`,
+/// whose branches run one after the other, `NOP();`.
+fn calls(rung: &str) -> Option<Vec<Range<usize>>> {
+    let (mut calls, mut at, mut branches) = (Vec::new(), 0, 0_usize);
+    while at < rung.len() {
+        let rest = &rung[at..];
+        at += match rest.as_bytes()[0] {
+            b' ' | b'\t' | b'\r' | b'\n' | b';' => 1,
+            b'[' => {
+                branches += 1;
+                1
+            }
+            b',' if branches > 0 => 1,
+            b']' => {
+                branches = branches.checked_sub(1)?;
+                1
+            }
+            _ if rest.starts_with("NOP()") => "NOP()".len(),
+            _ => {
+                let operands = rest.strip_prefix("JSR(")?;
+                let end = operands.find(['(', ')']).filter(|it| operands[*it..].starts_with(')'))?;
+                let length = "JSR(".len() + end + 1;
+                calls.push(at..at + length);
+                length
+            }
+        };
+    }
+    (branches == 0).then_some(calls)
+}
+
+/// A call of a rung as a statement.
+fn statement(rung: &Range<usize>, call: Range<usize>) -> [Chunk; 2] {
+    let place = rung.start + call.start..rung.start + call.end;
+    let end = Chunk::words(";\n", &(place.end..place.end));
+    [Chunk::verbatim(place), end]
 }
 
 /// The lines of a routine that was opened, to its end.

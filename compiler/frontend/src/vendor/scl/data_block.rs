@@ -24,7 +24,7 @@ impl Scl<'_> {
     /// `DATA_BLOCK "Plant" … BEGIN … END_DATA_BLOCK`
     pub fn data_block(&mut self) {
         let head = self.place(self.at);
-        let (name, place) = (self.name(self.at + 1), self.place(self.at + 1));
+        let (name, place) = (self.global_name(self.at + 1), self.place(self.at + 1));
         self.replace(head.start..place.end, "");
         self.at += 2;
         let mut is_retained = self.attributes();
@@ -34,7 +34,7 @@ impl Scl<'_> {
             self.out.write("END_STRUCT; END_TYPE\n", &place);
             format!("{name}_data")
         } else {
-            let mut ty = self.name(self.at);
+            let mut ty = self.global_name(self.at);
             let place = self.place(self.at);
             if super::is_counter(&ty.to_ascii_uppercase()) {
                 let message = format!(
