@@ -67,6 +67,21 @@ fn a_project_of_twincat_runs_as_it_lies() {
 }
 
 #[test]
+fn a_project_has_enumerations_with_texts() {
+    let folder = project("twincat_texts");
+    let list = "<TcPlcObject><EnumerationTextList Name=\"E_Part\"><Declaration><![CDATA[TYPE E_Part : (None, One := 7); END_TYPE
+]]></Declaration><XmlArchive><Data><v n=\"None\">\"no part\"</v></Data></XmlArchive></EnumerationTextList></TcPlcObject>
+";
+    folder.write("E_Part.TcTLEO", list);
+    folder.write("POUs/MAIN.TcPOU", MAIN.replace("station.Count() / divisor", "E_Part.One"));
+    folder.write("Line.plcproj", PROJECT.replace("</ItemGroup>", "<Compile Include=\"E_Part.TcTLEO\"/></ItemGroup>"));
+    for source in ["Line.plcproj", "."] {
+        let trace = folder.staunch(&format!("run {source} --scans 1 --vars parts --trace -"));
+        assert_eq!(trace.out(0), "scan,time_ms,parts\n1,0,7\n");
+    }
+}
+
+#[test]
 fn what_a_project_defines_decides_what_is_compiled() {
     let folder = project("twincat-defines");
     let body =
