@@ -70,8 +70,8 @@ impl Build {
         self
     }
 
-    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT`, `.TcIO` and `.TcTTO`,
-    /// Rockwell's `.L5X` and Siemens' `.scl`.
+    /// Adds every `.st` and `.iecst` file below a folder, and TwinCAT's `.TcPOU`, `.TcGVL`, `.TcDUT`, `.TcIO`, `.TcTLEO` and
+    /// `.TcTTO`, Rockwell's `.L5X` and Siemens' `.scl`.
     #[must_use]
     pub fn folder(self, path: impl Into<PathBuf>) -> Self {
         self.file(path)

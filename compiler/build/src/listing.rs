@@ -8,7 +8,7 @@ const DEEPEST: usize = 4;
 
 /// Whether a folder's file is a source by its name.
 pub fn is_source(path: &Path) -> bool {
-    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio", "tctto", "l5x", "scl"])
+    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio", "tctleo", "tctto", "l5x", "scl"])
 }
 
 /// Whether a file lists others.

@@ -38,7 +38,7 @@ pub fn read(text: &str) -> Option<Assembly> {
 /// Whether a file of this name is one of TwinCAT 3's.
 pub fn is_twincat_name(path: &str) -> bool {
     let extension = path.rsplit_once('.').map_or("", |it| it.1);
-    ["TcPOU", "TcGVL", "TcDUT", "TcIO", "TcTTO"].iter().any(|it| it.eq_ignore_ascii_case(extension))
+    ["TcPOU", "TcGVL", "TcDUT", "TcIO", "TcTLEO", "TcTTO"].iter().any(|it| it.eq_ignore_ascii_case(extension))
 }
 
 #[cfg(test)]

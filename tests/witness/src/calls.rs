@@ -66,6 +66,15 @@ impl<'a> Machine<'a> {
             }
         }
         let around = self.eno.take();
+        // An ENO of the callee's own is set by the callee, where it is called.
+        if !enabled && !self.declared.is_codesys() {
+            let own = arguments.iter().find(|it| is_enable(it) && is_declared(&declared, it));
+            if let Some((argument, ArgumentKind::Output { target: Some(_), negated, .. })) =
+                own.map(|it| (it, &it.kind))
+            {
+                eno = Some((argument, *negated));
+            }
+        }
         let result =
             if enabled { self.call_enabled(frame, callee, arguments, asked)? } else { self.unset(frame, callee)? };
         let found = std::mem::replace(&mut self.eno, around);

@@ -11,8 +11,22 @@ const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", 
 const CONDITIONS: [&str; 6] =
     ["hasattribute", "hasconstanttype", "hasconstantvalue", "hasvalue", "hastype", "project_defined"];
 /// Pragmas for editors and other tools.
-const HARMLESS_PRAGMAS: [&str; 12] =
-    ["analysis", "axcode", "bp", "end_region", "endregion", "flag", "flow", "info", "nobp", "noflow", "region", "text"];
+const HARMLESS_PRAGMAS: [&str; 13] = [
+    "analysis",
+    "axcode",
+    "bp",
+    "end_region",
+    "endregion",
+    "flag",
+    "flow",
+    "info",
+    "nobp",
+    "noflow",
+    "region",
+    // Of Siemens AX: who may read and write a variable from outside of the PLC.
+    "s7.extern",
+    "text",
+];
 
 /// The attributes that Staunch acts on, and those of CODESYS's and TwinCAT's editors, monitoring and downloads, which
 /// change nothing here.
@@ -153,7 +167,7 @@ impl Log<'_> {
     /// What a pragma that does not name a dialect is good for.
     fn check_pragma(&mut self, file: &ast::File<'_>, pragma: ast::Name<'_>) {
         let word: String =
-            pragma.text.trim().chars().take_while(|it| it.is_ascii_alphanumeric() || *it == '_').collect();
+            pragma.text.trim().chars().take_while(|it| it.is_ascii_alphanumeric() || matches!(it, '_' | '.')).collect();
         let word = word.to_ascii_lowercase();
         if super::list::is_list_pragma(pragma.text) {
             return;

@@ -79,6 +79,9 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> bool {
         let Ast::Name(name) = &callee.kind else { return false };
+        if self.signature.is_some() && self.has_destination(*name, arguments, span) {
+            return true;
+        }
         let Some((instruction, names)) = instruction(name.text) else { return false };
         let is_known = self.means_anything(&[*name], Sense::Callee);
         if is_known || self.decl.dialect(name.span).family() != Family::Logix {

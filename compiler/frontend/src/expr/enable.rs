@@ -18,6 +18,8 @@ use staunch_ir::{
 pub(crate) struct Enable<'a, 's> {
     en: Option<&'a ast::Expr<'s>>,
     eno: Option<Eno<'a, 's>>,
+    /// An ENO that the callee declares, which sets it where it is called: where it is not, nothing else does.
+    own_eno: Option<Eno<'a, 's>>,
     /// The call's other arguments.
     others: Vec<Span>,
 }
@@ -42,7 +44,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let owns = self.own_parameters(what, callee);
-        let mut enable = Enable { en: None, eno: None, others: Vec::new() };
+        let mut enable = Enable { en: None, eno: None, own_eno: None, others: Vec::new() };
+        let tells = !owns.0 && owns.1 && !self.decl.dialect(callee.span).declares_plain_enable();
         let mut rest = Vec::new();
         for argument in arguments {
             match &argument.kind {
@@ -56,6 +59,12 @@ impl<'s> Checker<'_, 's> {
                 }
                 ArgumentKind::Output { target: None, .. } if is_en(argument) && !owns.1 => {}
                 ArgumentKind::Input(..) | ArgumentKind::Output { .. } | ArgumentKind::Positional(_) => {
+                    if let ArgumentKind::Output { target: Some(target), negated, .. } = &argument.kind
+                        && tells
+                        && is_en(argument)
+                    {
+                        enable.own_eno = Some(Eno { target, negated: *negated });
+                    }
                     enable.others.extend(value_of(argument).map(|it| it.span));
                     rest.push(argument.clone());
                 }
@@ -110,7 +119,7 @@ impl<'s> Checker<'_, 's> {
         self.may_not_run = outer;
         self.late = around;
         let result = result?;
-        let otherwise = match late.filter(|_| may_be_false) {
+        let otherwise = match late.or(enable.own_eno).filter(|_| may_be_false) {
             Some(eno) => self.told_alone(eno, &enabled)?,
             None => Block::new(),
         };

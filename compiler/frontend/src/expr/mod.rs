@@ -36,6 +36,7 @@ mod instruction;
 mod late_target;
 mod literal;
 mod logix_operands;
+mod logix_strings;
 mod logix_text;
 mod loop_counter;
 mod memory;

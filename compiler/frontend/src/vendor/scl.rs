@@ -65,8 +65,17 @@ pub fn read(file: &str) -> Assembly {
     let mut out = Assembly::default();
     out.write("{dialect 'siemens'}\n", &(0..0));
     let tokens = token::Tokens::new(file).collect();
-    let mut reader =
-        Scl { file, tokens, at: 0, copied: 0, out, is_body: false, locals: FxHashMap::default(), is_combined: false };
+    let mut reader = Scl {
+        file,
+        tokens,
+        at: 0,
+        copied: 0,
+        out,
+        is_body: false,
+        locals: FxHashMap::default(),
+        has_enable: false,
+        is_combined: false,
+    };
     while reader.at < reader.tokens.len() {
         reader.block();
     }
@@ -86,6 +95,8 @@ struct Scl<'t> {
     is_body: bool,
     /// What the block declares, and its type, both in lower case.
     locals: FxHashMap<String, String>,
+    /// Whether the block is called with EN and ENO.
+    has_enable: bool,
     /// Whether the value of a combined assignment is being read.
     is_combined: bool,
 }
@@ -151,6 +162,7 @@ impl<'t> Scl<'t> {
         let Some(block) = BLOCKS.iter().find(|it| self.is(self.at, it.0)) else { return self.simple() };
         self.locals.clear();
         self.is_body = false;
+        self.has_enable = block.0.starts_with("FUNCTION");
         if block.0 == "DATA_BLOCK" {
             return self.data_block();
         }
@@ -374,7 +386,8 @@ impl<'t> Scl<'t> {
             }
             "BEGIN" => {
                 self.is_body = true;
-                self.replace(place, "");
+                let has_own = self.has_enable && self.names_enable(at);
+                self.replace(place, if has_own { "VAR_OUTPUT ENO : BOOL; END_VAR\n" } else { "" });
             }
             "DB_SPECIFIC" => self.replace(place, ""),
             "GOTO" => {
@@ -396,6 +409,16 @@ impl<'t> Scl<'t> {
             }
             _ => {}
         }
+    }
+
+    /// Whether a body, up to its end, sets its block's ENO or asks for it: each block has one, which is not declared.
+    fn names_enable(&self, from: usize) -> bool {
+        let is_end = |at: &usize| self.is(*at, "END_FUNCTION") || self.is(*at, "END_FUNCTION_BLOCK");
+        let is_own = |at: usize| {
+            self.is(at, "ENO") && self.text(at - 1) != "." && (self.text(at + 1), self.text(at + 2)) != ("=", ">")
+        };
+        let mut body = (from + 1..self.tokens.len()).take_while(|at| !is_end(at));
+        !self.locals.contains_key("eno") && body.any(is_own)
     }
 
     /// Whether a name is before its type.

@@ -1,5 +1,6 @@
 //! TwinCAT 3's files, `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`: declarations and bodies in CDATA sections; methods,
-//! properties and actions are elements beside them, and END_… is left out. A `.TcTTO` is a task.
+//! properties and actions are elements beside them, and END_… is left out. A `.TcTTO` is a task, and a `.TcTLEO` an
+//! enumeration with a text for each of its values.
 
 use super::assembly::{Assembly, Chunk, Trouble};
 use super::unit::{Body, Unit, What};
@@ -21,7 +22,7 @@ fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Resu
         let Part::Open(element) = part else { continue };
         is_empty = false;
         match element.name {
-            "POU" | "Itf" | "DUT" | "GVL" => {
+            "POU" | "Itf" | "DUT" | "GVL" | "EnumerationTextList" => {
                 let is_list = element.name == "GVL";
                 let place = element.place.clone();
                 let unit = unit(file, reader, What::Unit, element)?;
