@@ -169,3 +169,24 @@ END_PROGRAM
     has(&ran.out, &["1 of 1 100 %"]);
     has(&ran.out, &[", 0 survived"]);
 }
+
+#[test]
+fn two_classes_of_types_are_not_equal() {
+    let folder = Folder::new("type_classes_in_a_tcunit_suite");
+    let source = "{dialect 'codesys'}
+FUNCTION_BLOCK T EXTENDS FB_TestSuite
+VAR i : INT := 1; d : DINT := 1; s : STRING; END_VAR
+    TEST('sizes'); AssertEquals(Expected := i, Actual := d, Message := 'm'); TEST_FINISHED();
+    TEST('kinds'); AssertEquals(s, TRUE, ''); TEST_FINISHED();
+    TEST('literals'); AssertEquals(1, d, ''); AssertEquals(d, 16#01, ''); TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    folder.write("t.st", source);
+    for backend in ["interpret", "native", "rust"] {
+        let ran = folder.staunch(&format!("test t.st --backend {backend}"));
+        assert_eq!(ran.code, 1, "{}", ran.err);
+        has(&ran.out, &["expected (Type class = INT), found (Type class = DINT)"]);
+        has(&ran.out, &["expected (Type class = STRING), found (Type class = BOOL)"]);
+        has(&ran.out, &["ok      T.literals", "1 passed, 2 failed"]);
+    }
+}

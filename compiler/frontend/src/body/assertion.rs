@@ -196,6 +196,16 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Claim> {
         let sides = self.sides([left, right], op, span)?;
+        self.comparison_of(sides, [left, right], wants)
+    }
+
+    pub(super) fn comparison_of(
+        &mut self,
+        sides: Sides,
+        [left, right]: [&ast::Expr<'s>; 2],
+        wants: &'static str,
+    ) -> Option<Claim> {
+        let (op, span) = (sides.op, sides.span);
         if let (Some(Type::String(_)), Some(Type::String(_))) = (sides.a.ty(), sides.b.ty()) {
             let (Operand::Typed(a), Operand::Typed(b)) = (sides.a, sides.b) else { return None };
             let (a, actual) = self.keep("actual", a, left.span)?;
@@ -222,7 +232,7 @@ impl<'s> Checker<'_, 's> {
         Some(Claim::of(holds, wants, actual, expected))
     }
 
-    fn sides(&mut self, [left, right]: [&ast::Expr<'s>; 2], op: BinaryOp, span: Span) -> Option<Sides> {
+    pub(super) fn sides(&mut self, [left, right]: [&ast::Expr<'s>; 2], op: BinaryOp, span: Span) -> Option<Sides> {
         let mut a = self.operand(left, None)?;
         let hint = beside(&a, None);
         let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, hint))?;

@@ -2,23 +2,27 @@
 //! what it compared. The rest of TcUnit is Structured Text, in the library.
 
 use super::assertion::Claim;
+use crate::expr::any_input::class_of;
 use crate::expr::checker::Checker;
 use crate::expr::method::is_this;
+use crate::expr::operand::Operand;
 use crate::inherit::is_super;
 use crate::testing::Assertion;
 use crate::testing::suite::{FAILS, LIBRARY};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
-    Const, Elementary, Expr, Field, FieldId, Op, Place, Retain, Root, Section, StatementKind, Type, Value,
+    Chars, Const, Elementary, Expr, ExprKind, Field, FieldId, Op, Place, Retain, Root, Section, StatementKind,
+    StringType, Type, Value,
 };
 
 /// What an assertion compares.
 #[derive(Clone, Copy, Debug)]
 enum Compared<'n> {
     Condition(bool),
-    /// `AssertEquals`, and for texts.
+    /// `AssertEquals`
     Any,
+    Texts,
     Values(Elementary),
     Reals(Elementary),
     /// The METHOD of the suite that compares them, and whether it takes a distance.
@@ -35,8 +39,11 @@ impl<'n> Compared<'n> {
         if is("AssertTrue") || is("AssertFalse") {
             return Some(Self::Condition(is("AssertTrue")));
         }
-        if is("AssertEquals") || is("AssertEquals_STRING") || is("AssertEquals_WSTRING") {
+        if is("AssertEquals") {
             return Some(Self::Any);
+        }
+        if is("AssertEquals_STRING") || is("AssertEquals_WSTRING") {
+            return Some(Self::Texts);
         }
         let (before, ty) = name.split_once('_')?;
         let is = |word: &str| before.eq_ignore_ascii_case(word);
@@ -55,7 +62,7 @@ impl<'n> Compared<'n> {
     fn parameters(self) -> &'static [&'static str] {
         match self {
             Self::Condition(_) => &["Condition"],
-            Self::Any | Self::Values(_) => &["Expected", "Actual"],
+            Self::Any | Self::Texts | Self::Values(_) => &["Expected", "Actual"],
             Self::Reals(_) => &["Expected", "Actual", "Delta"],
             Self::Arrays { is_real: false, .. } => &["Expecteds", "Actuals"],
             Self::Arrays { is_real: true, .. } => &["Expecteds", "Actuals", "Delta"],
@@ -99,7 +106,8 @@ impl<'s> Checker<'_, 's> {
         let values: Vec<&ast::Expr<'s>> = values.iter().copied().flatten().collect();
         let claim = match (compared, &values[..]) {
             (Compared::Condition(wanted), [condition]) => self.claim_of(condition, wanted),
-            (Compared::Any, [expected, actual]) => {
+            (Compared::Any, [expected, actual]) => self.equal_of_any([expected, actual], span),
+            (Compared::Texts, [expected, actual]) => {
                 let claim = self.comparison([expected, actual], BinaryOp::Eq, "to be {}", span)?;
                 let (actual, expected) = (claim.expected, claim.actual);
                 Some(Claim { actual, expected, ..claim })
@@ -110,7 +118,10 @@ impl<'s> Checker<'_, 's> {
                 let differ = format!("__ARRAYS{dimensions}_{}", element.to_ascii_uppercase());
                 self.equal_arrays(&differ, &values, span)
             }
-            (Compared::Condition(_) | Compared::Any | Compared::Values(_) | Compared::Reals(_), _) => None,
+            (
+                Compared::Condition(_) | Compared::Any | Compared::Texts | Compared::Values(_) | Compared::Reals(_),
+                _,
+            ) => None,
         }?;
         self.assert_in_suite(claim, message.first().copied().flatten(), span)
     }
@@ -156,6 +167,48 @@ impl<'s> Checker<'_, 's> {
         let error = Diagnostic::new(Code::E0302, span, format!("wrong arguments for `{}`", name.text));
         self.report(error.help(format!("write `{}({}, Message)`", name.text, parameters.join(", "))));
         None
+    }
+
+    /// `AssertEquals`: of two classes of types, the values are not looked at.
+    fn equal_of_any(&mut self, both: [&ast::Expr<'s>; 2], span: Span) -> Option<Claim> {
+        let mut sides = self.sides(both, BinaryOp::Eq, span)?;
+        let [expected, actual] = both;
+        let classes = [self.class_of(expected, &sides.a), self.class_of(actual, &sides.b)];
+        if let [Some(expected), Some(actual)] = classes
+            && expected != actual
+        {
+            // What is evaluated for its effects, and may fault, is so.
+            for value in [sides.a.typed_mut(), sides.b.typed_mut()].into_iter().flatten() {
+                self.save("compared", value);
+            }
+            return self.other_classes([expected, actual], span);
+        }
+        let claim = self.comparison_of(sides, both, "to be {}")?;
+        let (actual, expected) = (claim.expected, claim.actual);
+        Some(Claim { actual, expected, ..claim })
+    }
+
+    /// The class that is handed on of an argument. What a literal without a type has of it, and what is computed of
+    /// numbers, is that of the other side.
+    fn class_of(&self, written: &ast::Expr<'s>, value: &Operand) -> Option<&'static str> {
+        if let Some(ty) = self.static_type(written) {
+            return Some(class_of(ty).1);
+        }
+        let ty = value.ty()?;
+        let is_computed = matches!(written.bare().kind, Ast::Unary(..) | Ast::Binary(..));
+        let is_number = matches!(ty, Type::Elementary(it) if it != Elementary::Bool && !it.is_time());
+        (!is_computed || !is_number).then_some(class_of(ty).1)
+    }
+
+    fn other_classes(&mut self, classes: [&'static str; 2], span: Span) -> Option<Claim> {
+        let at = self.at(span);
+        let [expected, actual] = classes.map(|it| {
+            let text = format!("(Type class = {it})").into_bytes();
+            let ty = Type::String(StringType { wide: false, capacity: u16::try_from(text.len()).unwrap_or(u16::MAX) });
+            Expr::new(ty, ExprKind::Text(Chars::Narrow(text)), at)
+        });
+        let (expected, actual) = (self.keep("expected", expected, span)?.1, self.keep("actual", actual, span)?.1);
+        Some(Claim::of(Expr::bool(false, at), "{}", actual, expected))
     }
 
     /// Two values of a type, each of which becomes that type as an input does.

@@ -5,42 +5,42 @@ use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, ast};
 use staunch_ir::{Elementary, Expr, ExprKind, FieldId, RefKind, Type, Value};
 
-/// The number of a type's class, of CODESYS' TypeClass. CHAR and WCHAR, which CODESYS does not have, are of none.
-fn class_of(ty: Type) -> u32 {
+/// The number of a type's class and its name, of CODESYS' TypeClass. CHAR and WCHAR, which CODESYS does not have, are of none.
+pub(crate) fn class_of(ty: Type) -> (u32, &'static str) {
     match ty {
         Type::Elementary(it) => match it {
-            Elementary::Bool => 0,
-            Elementary::Byte => 2,
-            Elementary::Word => 3,
-            Elementary::Dword => 4,
-            Elementary::Lword => 5,
-            Elementary::Sint => 6,
-            Elementary::Int => 7,
-            Elementary::Dint => 8,
-            Elementary::Lint => 9,
-            Elementary::Usint => 10,
-            Elementary::Uint => 11,
-            Elementary::Udint => 12,
-            Elementary::Ulint => 13,
-            Elementary::Real => 14,
-            Elementary::Lreal => 15,
-            Elementary::Time => 18,
-            Elementary::Date => 19,
-            Elementary::Dt => 20,
-            Elementary::Tod => 21,
-            Elementary::Char | Elementary::Wchar => 29,
-            Elementary::Ltime => 37,
-            Elementary::Ldate => 46,
-            Elementary::Ldt => 47,
-            Elementary::Ltod => 48,
+            Elementary::Bool => (0, "BOOL"),
+            Elementary::Byte => (2, "BYTE"),
+            Elementary::Word => (3, "WORD"),
+            Elementary::Dword => (4, "DWORD"),
+            Elementary::Lword => (5, "LWORD"),
+            Elementary::Sint => (6, "SINT"),
+            Elementary::Int => (7, "INT"),
+            Elementary::Dint => (8, "DINT"),
+            Elementary::Lint => (9, "LINT"),
+            Elementary::Usint => (10, "USINT"),
+            Elementary::Uint => (11, "UINT"),
+            Elementary::Udint => (12, "UDINT"),
+            Elementary::Ulint => (13, "ULINT"),
+            Elementary::Real => (14, "REAL"),
+            Elementary::Lreal => (15, "LREAL"),
+            Elementary::Time => (18, "TIME"),
+            Elementary::Date => (19, "DATE"),
+            Elementary::Dt => (20, "DATEANDTIME"),
+            Elementary::Tod => (21, "TIMEOFDAY"),
+            Elementary::Char | Elementary::Wchar => (29, "NONE"),
+            Elementary::Ltime => (37, "LTIME"),
+            Elementary::Ldate => (46, "LDATE"),
+            Elementary::Ldt => (47, "LDATEANDTIME"),
+            Elementary::Ltod => (48, "LTIMEOFDAY"),
         },
-        Type::String(it) if it.wide => 17,
-        Type::String(_) => 16,
-        Type::Reference(_) => 22,
-        Type::Subrange(..) => 24,
-        Type::Enum(_) => 25,
-        Type::Array(_) => 26,
-        Type::Struct(_) | Type::Block(_) => 28,
+        Type::String(it) if it.wide => (17, "WSTRING"),
+        Type::String(_) => (16, "STRING"),
+        Type::Reference(_) => (22, "POINTER"),
+        Type::Subrange(..) => (24, "SUBRANGE"),
+        Type::Enum(_) => (25, "ENUM"),
+        Type::Array(_) => (26, "ARRAY"),
+        Type::Struct(_) | Type::Block(_) => (28, "USERDEF"),
     }
 }
 
@@ -65,7 +65,7 @@ impl<'s> Checker<'_, 's> {
         let pointer = self.reference_to(expr, RefKind::PointerTo)?;
         let Type::Reference(reference) = pointer.ty else { return None };
         let target = self.decl.program.target(reference);
-        let class = ExprKind::Const(Value::U32(class_of(target)));
+        let class = ExprKind::Const(Value::U32(class_of(target).0));
         let size = i32::try_from(self.decl.sizeof(target)).unwrap_or(i32::MAX);
         let any = self.temporary("any", ty);
         let members: Vec<_> = self.decl.program.structure(id).fields.iter().map(|it| it.ty).collect();

@@ -2,7 +2,7 @@
 //! declarations, and resolve none.
 
 mod access;
-mod any_input;
+pub(crate) mod any_input;
 mod argument;
 mod assignment;
 mod binding;
