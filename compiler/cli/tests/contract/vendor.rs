@@ -67,7 +67,6 @@ fn a_project_of_twincat_runs_as_it_lies() {
 }
 
 #[test]
-<<<<<<< HEAD
 fn a_program_knows_the_names_of_its_project_and_task() {
     let folder = project("twincat-names");
     let task = "<TcPlcObject Version=\"1.1.0.1\"><Task Name=\"PlcTask\" Id=\"{b1}\"><CycleTime>4000</CycleTime><Priority>20</Priority>\
@@ -86,7 +85,9 @@ fn a_program_knows_the_names_of_its_project_and_task() {
         trace,
         "scan,time_ms,task,project,cycle\n1,0,PlcTask,BottlingLine,40000\n2,4,PlcTask,BottlingLine,40000\n"
     );
-=======
+}
+
+#[test]
 fn a_project_has_enumerations_with_texts() {
     let folder = project("twincat_texts");
     let list = "<TcPlcObject><EnumerationTextList Name=\"E_Part\"><Declaration><![CDATA[TYPE E_Part : (None, One := 7); END_TYPE
@@ -99,7 +100,6 @@ fn a_project_has_enumerations_with_texts() {
         let trace = folder.staunch(&format!("run {source} --scans 1 --vars parts --trace -"));
         assert_eq!(trace.out(0), "scan,time_ms,parts\n1,0,7\n");
     }
->>>>>>> wb
 }
 
 #[test]
