@@ -120,6 +120,7 @@ impl<'s> Report<'s> {
                 let source = self.source_line(&text).map(str::to_owned);
                 let is_budget = text.ends_with(&FaultKind::LoopBudget.to_string());
                 let help = is_budget.then(|| "`--loop-budget N` gives a test more turns".to_owned());
+                let help = help.or_else(|| self.help_on_missing(&text));
                 text.lines().map(str::to_owned).chain(source).chain(help).collect()
             }
             Outcome::Failed { assertion, actual, expected, message } => {
@@ -135,13 +136,31 @@ impl<'s> Report<'s> {
         }
     }
 
+    /// What to do about a call of what has no body: the fault's place is its declaration.
+    fn help_on_missing(&self, text: &str) -> Option<String> {
+        let place = text.strip_suffix(&FaultKind::NotImplemented.to_string())?.strip_suffix(": ")?;
+        let column: usize = place.rsplit(':').next()?.parse().ok()?;
+        let line = self.whole_line(text)?;
+        let rest: String = line.chars().skip(column.checked_sub(1)?).collect();
+        let name: String = rest.chars().take_while(|it| it.is_alphanumeric() || *it == '_').collect();
+        let is_function = line.to_ascii_uppercase().trim_start().starts_with("FUNCTION ");
+        let mock =
+            if is_function { format!("`MOCK_FUNCTION {name} RETURNS value;`") } else { "`MOCK instance;`".to_owned() };
+        (!name.is_empty())
+            .then(|| format!("the test calls `{name}`, which has no body here: replace it before that, by {mock}"))
+    }
+
     /// The line of the source that a fault's text begins with the place of.
     fn source_line(&self, text: &str) -> Option<&str> {
+        self.whole_line(text).map(str::trim)
+    }
+
+    fn whole_line(&self, text: &str) -> Option<&str> {
         self.session.sources.files().iter().find_map(|it| {
             let rest = text.strip_prefix(it.path.as_str())?.strip_prefix(':')?;
             let line = rest.split(':').next()?.parse().ok()?;
             let file = it.file();
-            file.text.get(file.line_range(line)).map(str::trim)
+            file.text.get(file.line_range(line))
         })
     }
 

@@ -146,7 +146,13 @@ END_PROGRAM
         let tested = folder.staunch(&format!("test tests.st --backend {backend}"));
         has(
             &tested.out(1),
-            &["ok      with a mock", "FAILED  without", "tests.st:2:10: what is called is not implemented here"],
+            &[
+                "ok      with a mock",
+                "FAILED  without",
+                "tests.st:2:10: what is called is not implemented here",
+                "the test calls `Speed`, which has no body here",
+                "`MOCK_FUNCTION Speed RETURNS value;`",
+            ],
         );
     }
 }

@@ -33,7 +33,13 @@ pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Stat
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
         if decl.is_head(slot) {
-            decl.check_has_no_body(body);
+            decl.check_has_no_body(body, "a METHOD of an INTERFACE has no body", "its classes have one: delete it");
+        } else if decl.is_abstract_routine(slot) {
+            decl.check_has_no_body(
+                body,
+                "an ABSTRACT METHOD has no body",
+                "its heirs have one: delete it, or ABSTRACT",
+            );
         }
         if decl.is_generic(slot) || decl.is_head(slot) {
             checked.push(Some((not_called(decl, slot), Uses::default())), 0);

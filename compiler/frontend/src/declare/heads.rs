@@ -7,7 +7,7 @@ use crate::start::INITIAL;
 use crate::types::declarations::{Declarations, Slot};
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Section, Type};
 use std::rc::Rc;
 
@@ -30,6 +30,7 @@ impl<'s> Declarations<'s> {
             }
             if pou.kind == PouKind::Interface {
                 self.check_interface(slot);
+                self.check_joined_heads(slot);
             }
             if pou.kind == PouKind::Program {
                 self.check_program_has_no_start(slot);
@@ -95,14 +96,69 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Reports statements in a METHOD of an INTERFACE.
-    pub(crate) fn check_has_no_body(&mut self, body: &[ast::Statement<'s>]) {
+    /// Reports an INTERFACE by which one name has several heads: no class could have it.
+    fn check_joined_heads(&mut self, slot: usize) {
+        if self.own_interfaces(slot).is_empty() {
+            return;
+        }
+        let mut interfaces: Vec<_> = self.interfaces_of(slot).iter().copied().collect();
+        interfaces.sort_unstable();
+        let mut known: FxHashMap<Key<'s>, Vec<usize>> = FxHashMap::default();
+        for interface in interfaces {
+            let is_head = |it: &usize| self.pous[*it].owner == Some(interface);
+            let heads: Vec<_> = (interface + 1..self.pous.len()).take_while(is_head).collect();
+            for second in heads.iter().copied() {
+                let others = known.entry(Key(self.pous[second].ast.name.text)).or_default().clone();
+                let first = others.into_iter().find(|it| self.is_another_head(*it, second));
+                if let Some(first) = first.filter(|it| !self.is_joined_in_a_base(slot, [*it, second])) {
+                    self.report_joined_heads(slot, [first, second]);
+                }
+            }
+            for head in heads {
+                known.entry(Key(self.pous[head].ast.name.text)).or_default().push(head);
+            }
+        }
+    }
+
+    /// Whether two heads of one name are not those of one routine, nor of two overloads.
+    fn is_another_head(&self, first: usize, second: usize) -> bool {
+        let is_overload = || self.has_overloads(second) && !self.have_same_parameters(first, second);
+        self.pous[first].ast.kind == self.pous[second].ast.kind && !self.is_alike(first, second) && !is_overload()
+    }
+
+    fn report_joined_heads(&mut self, slot: usize, heads: [usize; 2]) {
+        let (name, [first, second]) = (self.pous[slot].ast.name, heads.map(|it| self.title(it)));
+        let message = format!("`{first}` and `{second}` differ, and `{}` has both", name.text);
+        let [first, second] = heads.map(|it| self.pous[it].ast.name.span);
+        self.report(
+            Diagnostic::new(Code::E0403, name.span, message)
+                .label("no class can have both: the parameters and the results are to be the same")
+                .other(first, "declared here")
+                .other(second, "and here with another head"),
+        );
+    }
+
+    /// Whether an INTERFACE that this one extends has these two heads already.
+    fn is_joined_in_a_base(&mut self, slot: usize, heads: [usize; 2]) -> bool {
+        let bases = self.own_interfaces(slot);
+        let owners = heads.map(|it| self.pous[it].owner);
+        bases.into_iter().filter(|it| *it != slot).any(|base| {
+            let all = self.interfaces_of(base);
+            owners.iter().all(|it| it.is_some_and(|it| all.contains(&it)))
+        })
+    }
+
+    /// Whether a routine is ABSTRACT where it is written: not the copy that an heir has of it.
+    pub(crate) fn is_abstract_routine(&self, slot: usize) -> bool {
+        let pou = &self.pous[slot];
+        pou.owner.is_some() && pou.ast.home.is_none() && pou.ast.modifiers.is_abstract.is_some()
+    }
+
+    /// Reports statements in a METHOD of an INTERFACE, and in an ABSTRACT one.
+    pub(crate) fn check_has_no_body(&mut self, body: &[ast::Statement<'s>], message: &str, label: &str) {
         let mut written = body.iter().filter(|it| !matches!(it.kind, ast::StatementKind::Empty));
         if let Some(first) = written.next() {
-            self.report(
-                Diagnostic::new(Code::E0403, first.span, "a METHOD of an INTERFACE has no body")
-                    .label("its classes have one: delete it"),
-            );
+            self.report(Diagnostic::new(Code::E0403, first.span, message).label(label));
         }
     }
 

@@ -4,13 +4,14 @@ use super::specs::MAX_SIZE;
 use crate::ast::{self, InitialKind};
 use crate::expr::constant::constant;
 use crate::expr::unresolved::not_constant;
+use crate::lex::index;
 use crate::names::functions;
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, Const, ExprKind, Field, Location, Repr, Section, StructId, Type};
+use staunch_ir::{Array, ArrayId, Const, ExprKind, Field, Location, RefKind, Repr, Section, StructId, Type};
 use staunch_runtime::{BlockInfo, Pin, PinRole};
 use std::rc::Rc;
 
@@ -37,6 +38,12 @@ impl<'s> Declarations<'s> {
                 );
                 None
             }
+            (InitialKind::Value(expr), Type::Reference(id))
+                if self.program.references[id.index()].kind == RefKind::ReferenceTo && names_variable(expr) =>
+            {
+                self.report_assigned_reference(expr);
+                None
+            }
             (InitialKind::Value(expr), _) => self.initial_value(expr, target, scope),
             (InitialKind::Bind(expr), _) => {
                 self.not_supported(expr.span, "an address as an initial value here");
@@ -55,6 +62,21 @@ impl<'s> Declarations<'s> {
                 None
             }
         }
+    }
+
+    /// `r : REFERENCE TO INT := i`
+    fn report_assigned_reference(&mut self, expr: &ast::Expr<'s>) {
+        let text = self.log.sources.text(expr.span);
+        let error = Diagnostic::new(Code::E0211, expr.span, "a REFERENCE TO is set by `REF=`")
+            .label("this is what it is to refer to")
+            .help(format!("write `REF= {text}`"));
+        let before = &self.log.sources.get(expr.span.file).text[..index(expr.span.start)];
+        let sign = before.trim_end().strip_suffix(":=").and_then(|it| u32::try_from(it.len()).ok());
+        let sign = sign.map(|start| Span { start, end: expr.span.start, ..expr.span });
+        self.report(match sign {
+            Some(sign) => error.fix(sign, "REF= "),
+            None => error,
+        });
     }
 
     fn initial_value(&mut self, expr: &'s ast::Expr<'s>, target: &Resolved, scope: &Rc<Scope<'s>>) -> Option<Const> {
@@ -362,4 +384,20 @@ fn parts(whole: &Const, len: usize) -> Vec<Const> {
 
 fn collapse(values: Vec<Const>) -> Const {
     if values.iter().all(|it| *it == Const::Zero) { Const::Zero } else { Const::Struct(values) }
+}
+
+fn names_variable(expr: &ast::Expr<'_>) -> bool {
+    match &expr.bare().kind {
+        ast::ExprKind::Name(name) => !name.text.eq_ignore_ascii_case("NULL"),
+        ast::ExprKind::Member(..) | ast::ExprKind::Index(..) | ast::ExprKind::Deref(_) => true,
+        ast::ExprKind::Literal(_)
+        | ast::ExprKind::Address(_)
+        | ast::ExprKind::Part(..)
+        | ast::ExprKind::Call(..)
+        | ast::ExprKind::Unary(..)
+        | ast::ExprKind::Binary(..)
+        | ast::ExprKind::Assign(..)
+        | ast::ExprKind::Paren(_)
+        | ast::ExprKind::Error(_) => false,
+    }
 }

@@ -270,7 +270,8 @@ impl<'s> Declarations<'s> {
                     libraries => format!("the project's libraries are {}, by their files or folders", list(libraries)),
                 };
                 let place = around.first().map_or(span, |it| it.span);
-                self.not_there(&full, place).unwrap_or_else(|| {
+                let known = || self.library_not_there(&full, place);
+                self.not_there(&full, place).or_else(known).unwrap_or_else(|| {
                     Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`")).help(help)
                 })
             }
@@ -366,6 +367,10 @@ impl<'s> Declarations<'s> {
             error = error.help(hint);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        } else if let Some(libraries) = missing::libraries_with(dialect, name.text) {
+            error = error
+                .label(format!("it is in {libraries}, and not among what is bundled"))
+                .help("name its source, or a declaration of it, in `libraries` of staunch.toml");
         }
         self.report(error);
     }

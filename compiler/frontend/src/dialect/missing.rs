@@ -19,6 +19,52 @@ const TYPES: [(&str, &[&str]); 1] = [(
     ],
 )];
 
+/// What the blocks of PLCopen's motion control, `MC_Power`, are of.
+const MOTION: &str = "`Tc2_MC2` of TwinCAT, or `SM3_Basic` of CODESYS";
+
+/// Types of libraries that are not bundled, by which programs ask for these.
+const NOT_BUNDLED: [(&str, &[&str]); 5] = [
+    (MOTION, &["AXIS_REF"]),
+    ("`SM3_Basic` of CODESYS", &["AXIS_REF_SM3"]),
+    (
+        "`Tc2_System` of TwinCAT",
+        &[
+            "FB_FileOpen",
+            "FB_FileClose",
+            "FB_FileRead",
+            "FB_FileWrite",
+            "FB_FileGets",
+            "FB_FilePuts",
+            "FB_FileSeek",
+            "FB_FileTell",
+            "FB_FileEOF",
+            "FB_FileDelete",
+            "FB_FileRename",
+            "FB_CreateDir",
+            "FB_RemoveDir",
+            "ADSREAD",
+            "ADSWRITE",
+            "ADSRDWRT",
+            "ADSRDSTATE",
+        ],
+    ),
+    (
+        "`Tc3_JsonXml` of TwinCAT",
+        &["FB_JsonSaxWriter", "FB_JsonSaxReader", "FB_JsonDomParser", "FB_JsonReadWriteDatatype", "FB_XmlDomParser"],
+    ),
+    (
+        "`Tc2_TcpIp` of TwinCAT",
+        &[
+            "FB_SocketConnect",
+            "FB_SocketListen",
+            "FB_SocketAccept",
+            "FB_SocketSend",
+            "FB_SocketReceive",
+            "FB_SocketClose",
+        ],
+    ),
+];
+
 /// What TwinCAT's types tell of the machine, of which a program is told nothing here.
 const MEMBERS: [(&str, &[&str]); 2] = [
     (
@@ -88,6 +134,25 @@ pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static s
     }
     let found = TYPES.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0);
     found.filter(|_| dialect == Dialect::Codesys)
+}
+
+/// Whether a name is that of a library of TwinCAT or CODESYS: their names begin alike.
+pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
+    const STARTS: [&str; 6] = ["Tc2_", "Tc3_", "SM3_", "CAA_", "IoDrv", "Cmp"];
+    let starts_so = |it: &&str| name.get(..it.len()).is_some_and(|start| start.eq_ignore_ascii_case(it));
+    dialect == Dialect::Codesys && name.len() > 4 && STARTS.iter().any(|it| starts_so(&it))
+}
+
+/// The libraries of TwinCAT and CODESYS that have a type of this name, which is not bundled.
+pub(crate) fn libraries_with(dialect: Dialect, name: &str) -> Option<&'static str> {
+    if dialect != Dialect::Codesys {
+        return None;
+    }
+    let is_motion = name.get(..3).is_some_and(|it| it.eq_ignore_ascii_case("MC_"));
+    if is_motion {
+        return Some(MOTION);
+    }
+    NOT_BUNDLED.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0)
 }
 
 /// Whether TwinCAT's type has a member of this name, which is not there here.

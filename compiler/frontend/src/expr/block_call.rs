@@ -45,6 +45,10 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             other => {
+                if let Some((_, name, _)) = self.property(callee) {
+                    self.report_property_called(name, arguments, callee.span, span);
+                    return None;
+                }
                 let ty = self.type_name(other);
                 self.report(
                     Diagnostic::new(Code::E0305, callee.span, format!("a variable of type {ty} cannot be called"))
@@ -53,6 +57,21 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// `m.Val()`: a PROPERTY is read without parentheses.
+    fn report_property_called(
+        &mut self,
+        name: ast::Name<'s>,
+        arguments: &[ast::Argument<'s>],
+        callee: Span,
+        span: Span,
+    ) {
+        let error = Diagnostic::new(Code::E0305, callee, format!("`{}` is a PROPERTY, which is not called", name.text))
+            .label("it is read, and written, as a variable is");
+        let error = error.help(format!("write `{}` without `()`", name.text));
+        let brackets = Span { start: callee.end, ..span };
+        self.report(if arguments.is_empty() { error.fix(brackets, "") } else { error });
     }
 
     pub(crate) fn callable(&mut self, found: &Found<'s>, span: Span) -> Option<()> {

@@ -364,11 +364,27 @@ impl<'s> Checker<'_, 's> {
                     .label(format!("`{}` cannot be part of {ty}", name.text));
                 self.report(match of_text.flatten() {
                     Some(help) => error.help(help),
-                    None => error,
+                    None => self.through_reference(error, self.type_of(&found), base, name),
                 });
                 None
             }
         }
+    }
+
+    /// `p.x` of a POINTER TO or REF_TO what has an `x`: how to follow it.
+    fn through_reference(&self, error: Diagnostic, ty: Type, base: &ast::Expr<'s>, name: ast::Name<'s>) -> Diagnostic {
+        let Type::Reference(id) = ty else { return error };
+        if self.decl.interface_of(ty).is_some() {
+            return error;
+        }
+        let target = self.decl.program.target(id);
+        if !matches!(target, Type::Struct(_) | Type::Block(_)) {
+            return error;
+        }
+        let text = self.decl.log.sources.text(base.span);
+        let (to, target) = (Span { start: base.span.end, end: name.span.start, ..name.span }, self.type_name(target));
+        let error = error.help(format!("what it refers to, a {target}, has them: write `{text}^.{}`", name.text));
+        error.fix(to, "^.")
     }
 
     fn struct_member(&mut self, found: Found<'s>, id: StructId, name: ast::Name<'s>) -> Option<Found<'s>> {

@@ -43,15 +43,20 @@ fn all_callees(declarations: &mut Declarations<'_>) -> Vec<Vec<usize>> {
 
 /// The slots of the POUs, a callee before its callers.
 fn sorted(declarations: &mut Declarations<'_>, calls: &[Vec<usize>]) -> Option<Vec<usize>> {
-    let mut order = Vec::new();
+    let (mut order, mut cycles) = (Vec::new(), Cycles::default());
     let mut marks = vec![Mark::New; calls.len()];
     for at in 0..calls.len() {
-        if let Err(cycle) = visit(at, calls, &mut marks, &mut order) {
-            report_recursion(declarations, &cycle);
-            return None;
-        }
+        visit(at, calls, &mut marks, &mut order, &mut cycles);
     }
-    Some(order)
+    cycles.found.iter().for_each(|it| report_recursion(declarations, it));
+    cycles.found.is_empty().then_some(order)
+}
+
+/// Cycles of calls. Of those that share a routine, one says enough.
+#[derive(Default)]
+struct Cycles {
+    found: Vec<Vec<usize>>,
+    routines: FxHashSet<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -61,10 +66,10 @@ enum Mark {
     Closed,
 }
 
-/// Depth-first with its own stack: a chain of calls may be long. The error is the cycle.
-fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec<usize>) -> Result<(), Vec<usize>> {
+/// Depth-first with its own stack: a chain of calls may be long. The cycles are those that close on the way.
+fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec<usize>, cycles: &mut Cycles) {
     if marks[start] != Mark::New {
-        return Ok(());
+        return;
     }
     marks[start] = Mark::Open;
     let mut stack = vec![(start, 0)];
@@ -75,6 +80,7 @@ fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec
             stack.pop();
             continue;
         };
+        let at = *at;
         *next += 1;
         match marks[callee] {
             Mark::Closed => {}
@@ -82,13 +88,18 @@ fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec
                 marks[callee] = Mark::Open;
                 stack.push((callee, 0));
             }
+            // Seen at once: a long cycle that many routines close is not gone through for each.
+            Mark::Open if cycles.routines.contains(&at) || cycles.routines.contains(&callee) => {}
             Mark::Open => {
                 let first = stack.iter().position(|(at, _)| *at == callee).unwrap_or(0);
-                return Err(stack[first..].iter().map(|(at, _)| *at).collect());
+                let cycle: Vec<usize> = stack[first..].iter().map(|(at, _)| *at).collect();
+                if cycle.iter().all(|it| !cycles.routines.contains(it)) {
+                    cycles.routines.extend(&cycle);
+                    cycles.found.push(cycle);
+                }
             }
         }
     }
-    Ok(())
 }
 
 fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {

@@ -64,6 +64,11 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 ["TEST_PROGRAM", "TEST_FUNCTION_BLOCK"].iter().any(|it| it.eq_ignore_ascii_case(input.text(span)));
             if is_test { it.help("a unit test is written `TEST 'what it shows' … END_TEST`") } else { it }
         }
+        (Expected::Closing(Kind::CloseParen, opened), _) if found == Kind::Comma && names_member(input, opened) => {
+            Diagnostic::new(Code::E0001, span, "a list of members is allowed only in a declaration")
+                .label("expected `)`")
+                .help("assign to one member after the other: `s.a := 1;`")
+        }
         (Expected::More(end, opened) | Expected::Closing(end, opened), _) => {
             let open = input.state().place(opened);
             let it = Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
@@ -108,6 +113,12 @@ fn is_comparison(kind: Kind) -> bool {
 fn behind_junction(input: &mut In<'_, '_, '_>, at: usize) -> bool {
     let before = at.checked_sub(1).and_then(|it| input.state().tokens.kinds.get(it).copied());
     matches!(before, Some(Kind::And | Kind::Or | Kind::Xor | Kind::Ampersand | Kind::AndThen | Kind::OrElse))
+}
+
+/// `(a := 1`
+fn names_member(input: &mut In<'_, '_, '_>, opened: usize) -> bool {
+    let kinds = &input.state().tokens.kinds;
+    kinds.get(opened..).is_some_and(|it| it.starts_with(&[Kind::OpenParen, Kind::Name, Kind::Assign]))
 }
 
 /// `'it's late'`: what follows the second quote is a part of the text, and the third has no partner.

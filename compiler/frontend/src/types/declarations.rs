@@ -357,6 +357,17 @@ impl<'s> Declarations<'s> {
         Some(error.label("the project refers to a library by this name").help(help))
     }
 
+    /// A library of TwinCAT's or CODESYS's, by its name, that is not there.
+    pub fn library_not_there(&self, namespace: &str, place: Span) -> Option<Diagnostic> {
+        if !missing::is_library(self.dialect(place), namespace) {
+            return None;
+        }
+        let error = Diagnostic::new(Code::E0102, place, format!("the library `{namespace}` is not there"));
+        let path = format!("`libraries = [\"…/{namespace}\"]`");
+        let help = format!("have its sources in staunch.toml, a folder or project named `{namespace}`: {path}");
+        Some(error.label("it is not among those that are bundled").help(help))
+    }
+
     /// What a POU is called for people: `Class.Method`.
     pub fn title(&self, slot: usize) -> String {
         let name = self.pous[slot].ast.name;
