@@ -139,8 +139,8 @@ pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static s
 /// Whether a name is that of a library of TwinCAT or CODESYS: their names begin alike.
 pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
     const STARTS: [&str; 6] = ["Tc2_", "Tc3_", "SM3_", "CAA_", "IoDrv", "Cmp"];
-    let starts_so = |it: &&str| name.get(..it.len()).is_some_and(|start| start.eq_ignore_ascii_case(it));
-    dialect == Dialect::Codesys && name.len() > 4 && STARTS.iter().any(|it| starts_so(&it))
+    let starts_so = |it: &str| name.get(..it.len()).is_some_and(|start| start.eq_ignore_ascii_case(it));
+    dialect == Dialect::Codesys && name.len() > 4 && STARTS.iter().any(|it| starts_so(it))
 }
 
 /// The libraries of TwinCAT and CODESYS that have a type of this name, which is not bundled.
