@@ -64,8 +64,9 @@ impl<'s> Checker<'_, 's> {
         let bits = matches!(ty, Type::Elementary(it) if it.is_bits() || (of_integers && it.is_integer()));
         if !bits {
             let found = self.type_name(ty);
+            let wanted = if dialect.has_bits_of_integers() { "an integer" } else { "a bit string" };
             self.report(
-                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or a bit string, this is {found}"))
+                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or {wanted}, this is {found}"))
                     .label(format!("this is {found}")),
             );
             return None;
