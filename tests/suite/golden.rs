@@ -69,6 +69,7 @@ fn form(kind: &StatementKind) -> &'static str {
         StatementKind::Case { .. } => "case",
         StatementKind::Loop { .. } => "loop",
         StatementKind::For(_) => "for",
+        StatementKind::Try { .. } => "try",
         StatementKind::Turn => "turn",
         StatementKind::Exit => "exit",
         StatementKind::Continue => "continue",

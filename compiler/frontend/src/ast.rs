@@ -615,6 +615,7 @@ pub enum StatementKind<'s> {
         body: Vec<Statement<'s>>,
         until: Expr<'s>,
     },
+    Try(Box<Try<'s>>),
     Exit,
     Continue,
     Return,
@@ -622,6 +623,25 @@ pub enum StatementKind<'s> {
     ReturnIf(Expr<'s>),
     /// What recovery put in place of something that did not parse; it has been reported.
     Error,
+}
+
+/// `__TRY … __CATCH(exception) … __FINALLY … __ENDTRY`
+#[derive(Clone, Debug)]
+pub struct Try<'s> {
+    /// `__TRY`
+    pub word: Span,
+    pub body: Vec<Statement<'s>>,
+    /// What `__CATCH` gives the number of the exception.
+    pub exception: Option<Expr<'s>>,
+    pub handler: Vec<Statement<'s>>,
+    pub finally: Option<Finally<'s>>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Finally<'s> {
+    /// Of the word.
+    pub word: Span,
+    pub body: Vec<Statement<'s>>,
 }
 
 #[derive(Clone, Debug)]
@@ -818,6 +838,11 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
         StatementKind::For { body, .. } | StatementKind::While { body, .. } | StatementKind::Repeat { body, .. } => {
             see(body);
         }
+        StatementKind::Try(it) => {
+            see(&it.body);
+            see(&it.handler);
+            it.finally.iter().for_each(|it| see(&it.body));
+        }
         StatementKind::Empty
         | StatementKind::Assign { .. }
         | StatementKind::AssignAll { .. }
@@ -877,6 +902,12 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
             StatementKind::Repeat { body, until } => {
                 each_expr(body, visit);
                 each_part(until, visit);
+            }
+            StatementKind::Try(it) => {
+                each_expr(&it.body, visit);
+                it.exception.iter().for_each(|it| each_part(it, visit));
+                each_expr(&it.handler, visit);
+                it.finally.iter().for_each(|it| each_expr(&it.body, visit));
             }
         }
     }

@@ -122,6 +122,11 @@ impl Dialect {
         self == Self::Codesys
     }
 
+    /// `__TRY`.
+    pub const fn handles_exceptions(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

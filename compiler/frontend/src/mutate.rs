@@ -110,7 +110,11 @@ impl Mutants<'_> {
             StatementKind::If { branches, .. } => branches.iter().for_each(|it| self.negated(&it.0)),
             StatementKind::While { condition, .. } | StatementKind::ReturnIf(condition) => self.negated(condition),
             StatementKind::Repeat { until, .. } => self.negated(until),
-            StatementKind::Empty | StatementKind::Case { .. } | StatementKind::For { .. } | StatementKind::Error => {}
+            StatementKind::Empty
+            | StatementKind::Case { .. }
+            | StatementKind::For { .. }
+            | StatementKind::Try(_)
+            | StatementKind::Error => {}
         }
     }
 

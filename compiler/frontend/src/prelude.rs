@@ -266,6 +266,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "GETCURTASKINDEX"  "getcurtaskindex"  [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
     Function "GETCURTASKINDEXEX" "getcurtaskindexex" [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
     Function "F_GetTaskInfo"    "f_gettaskinfo"    [Codesys: Tc2_System] "TwinCAT_SystemInfoVarList";
+    Function "F_RaiseException" "f_raiseexception" [Codesys: Tc2_System] "__SYSTEM";
     Type     "GETCPUCOUNTER"    "getcpucounter"    [Codesys: Tc2_System];
     Type     "INTEGRAL"         "iec_integral"     [Iec Openplc];
     Type     "DERIVATIVE"       "iec_derivative"   [Iec Openplc];

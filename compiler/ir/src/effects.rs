@@ -11,7 +11,7 @@ use crate::faults::{Faults, op_faults};
 use crate::loops::{Known, checked_locals, constant_position};
 use crate::visit::{self, Access};
 use crate::{
-    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Op, ParamId, Place, Program,
+    Argument, ArrayId, Class, ClassKind, Expr, ExprKind, FieldId, For, LocalId, Location, Op, ParamId, Place, Program,
     Projection, Root, Routine, RoutineId, RoutineKind, Statement, StatementKind, StructId, Type, reference,
 };
 use std::collections::BTreeSet;
@@ -141,7 +141,11 @@ impl<'a> Finder<'a> {
                 self.effects.context |= it.instance.is_some();
             }
             StatementKind::Turn => self.takes_turns(),
-            StatementKind::Fault(_) => self.effects.faults = true,
+            // Not every fault of its body is caught.
+            StatementKind::Fault(_) | StatementKind::Try { .. } => {
+                self.effects.faults = true;
+                self.effects.faults_at_call |= statement.at == Location::CALLER;
+            }
             StatementKind::For(it) => {
                 let repr = self.program.repr(it.counter.ty);
                 self.effects.faults |= it.step_may_fault(repr.and_then(|repr| repr.range()));

@@ -1,9 +1,10 @@
 //! A whole program: its types, globals, classes, routines and instances.
 
 use crate::types::ids;
+
 use crate::{
     Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Projection, RefKind, RefType, ReferenceId,
-    Root, Struct, StructId, Type,
+    Root, StatementKind, Struct, StructId, Type, visit,
 };
 use core::fmt;
 use staunch_runtime::Family;
@@ -300,6 +301,16 @@ impl Program {
     pub fn starts(&self) -> Vec<(usize, RoutineId)> {
         let starts = self.instances.iter().enumerate().filter_map(|(at, it)| Some((at, self.class(it.program).start?)));
         if self.instances.len() > 1 { starts.collect() } else { Vec::new() }
+    }
+
+    /// Whether a routine handles faults, so that a scan may go on after one: turns that a loop has had are taken then
+    /// wherever it faults.
+    pub fn handles_faults(&self) -> bool {
+        let mut found = false;
+        for routine in &self.routines {
+            visit::statements(&routine.body, &mut |it| found |= matches!(it.kind, StatementKind::Try { .. }));
+        }
+        found
     }
 
     pub fn enumeration(&self, id: EnumId) -> &Enum {

@@ -80,6 +80,7 @@ impl Taken<'_> {
             | StatementKind::If { .. }
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }
+            | StatementKind::Try { .. }
             | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue

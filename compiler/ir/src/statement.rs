@@ -41,6 +41,13 @@ pub enum StatementKind {
         count: Option<Box<Count>>,
     },
     For(Box<For>),
+    /// Runs `body`. A fault in it [that can be caught](FaultKind::can_be_caught) ends it there: `kind`, a local of type USINT, is
+    /// given the number of the fault's kind, and `handler` runs.
+    Try {
+        body: Block,
+        kind: Place,
+        handler: Block,
+    },
     /// Takes one of the turns that the loops of a scan have; faults when none is left.
     Turn,
     /// Leaves the innermost loop.
@@ -305,6 +312,7 @@ impl StatementKind {
             }
             Self::Loop { body, continuing, count: _ } => vec![body, continuing],
             Self::For(it) => vec![&it.body],
+            Self::Try { body, kind: _, handler } => vec![body, handler],
             Self::Assign { .. }
             | Self::Turn
             | Self::Exit
@@ -326,6 +334,7 @@ impl StatementKind {
             }
             Self::Loop { body, continuing, count: _ } => vec![body, continuing],
             Self::For(it) => vec![&mut it.body],
+            Self::Try { body, kind: _, handler } => vec![body, handler],
             Self::Assign { .. }
             | Self::Turn
             | Self::Exit

@@ -16,6 +16,7 @@ pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool)
         StatementKind::Assign { .. }
         | StatementKind::If { .. }
         | StatementKind::Case { .. }
+        | StatementKind::Try { .. }
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return

@@ -59,7 +59,9 @@ fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
             rewrite_place(block, by);
             inputs.iter_mut().for_each(|it| rewrite_expr(it, by));
         }
-        StatementKind::PrescanBlock { block, .. } => rewrite_place(block, by),
+        StatementKind::PrescanBlock { block: place, .. } | StatementKind::Try { kind: place, .. } => {
+            rewrite_place(place, by)
+        }
         StatementKind::Loop { .. }
         | StatementKind::Turn
         | StatementKind::Exit
@@ -152,6 +154,7 @@ pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
             inputs.iter().for_each(|it| reads(it, &mut |place| see(place, Access::Read)));
         }
         StatementKind::PrescanBlock { block, .. } => borrow(block, see),
+        StatementKind::Try { kind, .. } => see(kind, Access::Write),
         StatementKind::For(it) => {
             index_reads(&it.counter, &mut |place| see(place, Access::Read));
             reads(&it.first, &mut |place| see(place, Access::Read));
@@ -206,6 +209,7 @@ pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
         | StatementKind::Continue
         | StatementKind::Return
         | StatementKind::PrescanBlock { .. }
+        | StatementKind::Try { .. }
         | StatementKind::Fault(_) => {}
     }
 }
@@ -247,6 +251,7 @@ pub fn targets<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Place)) {
             it.result.iter().for_each(see);
         }
         StatementKind::CallBlock { block, .. } | StatementKind::PrescanBlock { block, .. } => see(block),
+        StatementKind::Try { kind, .. } => see(kind),
         StatementKind::If { .. }
         | StatementKind::Case { .. }
         | StatementKind::Loop { .. }

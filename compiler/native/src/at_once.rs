@@ -16,6 +16,10 @@ const MOST_IN_A_ROUTINE: usize = 8192;
 impl<'p> Function<'_, 'p> {
     /// How many turns the loop takes at once; `None` where it takes them one by one.
     pub(crate) fn copies(&mut self, body: &[Statement], continuing: &[Statement]) -> Option<usize> {
+        // A fault among copies would leave the turns that were had.
+        if self.module.handles_faults {
+            return None;
+        }
         let callee_does = |callee: RoutineId| self.module.effects(callee).turns;
         let size = turns::size_of_single(body, continuing, &callee_does)?;
         let copies = (ENOUGH / size.max(1)).min(MOST_COPIES);

@@ -77,7 +77,7 @@ impl Function<'_, '_> {
         block
     }
 
-    fn passing_block(&mut self) -> clif::Block {
+    pub(crate) fn passing_block(&mut self) -> clif::Block {
         if let Some(known) = self.faults.passing.last()
             && self.faults.passing_to_last < PASSING
         {
@@ -98,15 +98,20 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn close_faults(&mut self) {
+        self.end_faults(&mut |this, code| this.return_fault(code));
+    }
+
+    /// Fills the blocks that faults lead to: each ends by what `end` emits.
+    pub(crate) fn end_faults(&mut self, end: &mut dyn FnMut(&mut Self, clif::Value)) {
         for (code, block) in core::mem::take(&mut self.faults.known) {
             self.go_on_in(block);
             let code = self.code(code);
-            self.return_fault(code);
+            end(self, code);
         }
         for block in core::mem::take(&mut self.faults.passing) {
             self.go_on_in(block);
             let code = self.builder.block_params(block)[0];
-            self.return_fault(code);
+            end(self, code);
         }
     }
 

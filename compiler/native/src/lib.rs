@@ -34,6 +34,7 @@ mod inline_conversion;
 mod inline_op;
 mod runtime_call;
 
+mod attempt;
 mod fault;
 mod memory;
 

@@ -59,6 +59,8 @@ pub(crate) struct ModuleEmitter<'p> {
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
+    /// A scan may go on after a fault.
+    pub(crate) handles_faults: bool,
     /// Where something follows or makes a reference.
     references: Option<References>,
     /// How much of the stack each function takes, in the order in which they are made.
@@ -78,6 +80,7 @@ impl<'p> ModuleEmitter<'p> {
         Self {
             program,
             layout: Layout::new(program),
+            handles_faults: program.handles_faults(),
             effects,
             output,
             functions: Vec::with_capacity(program.routines.len()),

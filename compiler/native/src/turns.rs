@@ -1,5 +1,6 @@
 //! The turns that the loops of a scan take. While a loop runs, what is left of them is a variable; the
-//! context gets it back where others may look: at the loop's end, at RETURN, and around calls that take turns.
+//! context gets it back where others may look: at the loop's end, at RETURN, and around calls that take turns. In a program that
+//! handles faults the context alone has it.
 //! A loop whose bounds say how many it has takes them all before the first one, or none where they are few.
 
 use crate::function::{Few, Flow, Function};
@@ -44,7 +45,9 @@ impl Way {
 impl<'p> Function<'_, 'p> {
     /// Before a loop, whose blocks may take turns. Returns whether it is the outermost that does.
     pub(crate) fn open_turns(&mut self, blocks: &[&Block]) -> bool {
-        let opens = self.turns.is_none() && blocks.iter().any(|it| has_turns(it));
+        // A fault would leave them in a variable that is gone.
+        let kept = !self.module.handles_faults;
+        let opens = kept && self.turns.is_none() && blocks.iter().any(|it| has_turns(it));
         if opens {
             let variable = self.builder.declare_var(types::I64);
             self.turns = Some(variable);
@@ -94,19 +97,18 @@ impl<'p> Function<'_, 'p> {
             Few::Yes => return,
             Few::Taken(it) => Some(it),
         };
-        let variable = self.turns.expect("verified IR: a turn is a loop's");
-        let left = self.builder.use_var(variable);
+        let left = self.turns_left();
         if let Some(taken) = taken {
             let is_short = self.ins().icmp(IntCC::UnsignedLessThan, left, taken);
             self.fault_if(is_short, FaultKind::LoopBudget, at);
             let rest = self.ins().isub(left, taken);
-            return self.builder.def_var(variable, rest);
+            return self.set_turns_left(rest);
         }
         // The rest is what is tested, so that it is found here, and not in a block of its own at the turn's end.
         let rest = self.ins().iadd_imm_s(left, -1);
         let was_none = self.ins().icmp_imm_s(IntCC::Equal, rest, -1);
         self.fault_if(was_none, FaultKind::LoopBudget, at);
-        self.builder.def_var(variable, rest);
+        self.set_turns_left(rest);
     }
 
     /// Takes all turns before the first one, if there is any.

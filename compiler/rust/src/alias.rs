@@ -241,6 +241,11 @@ impl Separator<'_> {
                 body: self.block(body, &it.body),
                 ..(**it).clone()
             })),
+            StatementKind::Try { body: inner, kind, handler } => StatementKind::Try {
+                body: self.block(body, inner),
+                kind: body.place(kind),
+                handler: self.block(body, handler),
+            },
             StatementKind::Turn => StatementKind::Turn,
             StatementKind::Call { callee, instance, arguments, result } => {
                 let instance = instance.as_ref().map(|it| body.place(it));

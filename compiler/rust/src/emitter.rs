@@ -27,6 +27,8 @@ pub struct Emitter<'p> {
     /// The program has references: what several paths may reach lies in cells, and each routine is handed
     /// the whole machine.
     pub shared: bool,
+    /// A scan may go on after a fault.
+    pub handles_faults: bool,
 }
 
 impl<'p> Emitter<'p> {
@@ -34,8 +36,8 @@ impl<'p> Emitter<'p> {
         let names = Names::new(program, origins);
         let effects = effects(program, &Rules { scans_take_all: true, ..Rules::PLAIN });
         let shared = !program.references.is_empty();
-        let constants = Constants::new();
-        Self { program, origins, names, effects, layout: Layout::new(program), constants, shared }
+        let (constants, handles_faults) = (Constants::new(), program.handles_faults());
+        Self { program, origins, names, effects, layout: Layout::new(program), constants, shared, handles_faults }
     }
 
     pub fn ty(&self, ty: Type) -> TokenStream {

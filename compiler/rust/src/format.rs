@@ -405,7 +405,17 @@ fn is_type(name: &str) -> bool {
 fn is_module(name: &str) -> bool {
     matches!(
         name,
-        "firmware" | "ops" | "reference" | "text" | "time" | "iec" | "cscape" | "codesys" | "openplc" | "logix"
+        "exception"
+            | "firmware"
+            | "ops"
+            | "reference"
+            | "text"
+            | "time"
+            | "iec"
+            | "cscape"
+            | "codesys"
+            | "openplc"
+            | "logix"
     )
 }
 

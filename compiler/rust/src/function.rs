@@ -23,6 +23,8 @@ pub struct Function<'a> {
     /// It returns a `Result`.
     pub faults: bool,
     pub loops: Loops,
+    /// How many closures of statements whose faults are handled are around.
+    pub attempts: usize,
     /// Variables that the loops around have copied, innermost last.
     pub counters: Vec<(Place, Ident)>,
     /// The names of those copies, by what they copy.
@@ -97,6 +99,7 @@ impl<'a> Emitter<'a> {
             borrowed: needs.borrowed.clone(),
             faults,
             loops: Loops::default(),
+            attempts: 0,
             counters: Vec::new(),
             counter_names: HashMap::new(),
             hoisted_indices: Vec::new(),

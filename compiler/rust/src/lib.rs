@@ -15,6 +15,7 @@ mod declare;
 mod emitter;
 mod loop_state;
 
+mod attempt;
 mod constant;
 mod expression;
 mod external;

@@ -80,12 +80,10 @@ impl Function<'_> {
                 let take = quote!(cx.take_turn()#at?;);
                 self.loops.few.as_ref().map_or_else(|| take.clone(), |few| quote!(if !#few { #take }))
             }
+            StatementKind::Try { body, kind, handler } => self.attempt(statement, body, kind, handler),
             StatementKind::Exit => self.leave(),
             StatementKind::Continue => self.next(),
-            StatementKind::Return => {
-                let value = self.returned();
-                quote!(return #value;)
-            }
+            StatementKind::Return => self.return_from_body(),
             StatementKind::Call { result: Some(result), .. } => {
                 let call = self.call(statement);
                 self.assigned(statement, result, call)

@@ -34,6 +34,10 @@ impl Function<'_> {
 
     /// How many rounds a strip has: a power of two, as few different loops are easier to read.
     fn rounds(&mut self, whole: &[Statement], continuing: &[Statement]) -> Option<usize> {
+        // A strip takes its turns when it ends, and a fault would leave them.
+        if self.emitter.handles_faults {
+            return None;
+        }
         let size = turns::size_of_single(whole, continuing, &|it| self.callee_takes_turns(it))?;
         let rounds = 1 << (ENOUGH / size.max(1)).clamp(1, MOST).ilog2();
         let copied = self.loops.copied + rounds * size;

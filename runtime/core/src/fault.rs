@@ -37,10 +37,12 @@ pub enum FaultKind {
     Deleted = 14,
     /// `__DELETE` was given what `__NEW` did not make.
     NotOfPool = 15,
+    /// The program raised an exception (TwinCAT's `F_RaiseException`).
+    Raised = 16,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -56,6 +58,7 @@ impl FaultKind {
         Self::NegativeTimer,
         Self::Deleted,
         Self::NotOfPool,
+        Self::Raised,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -81,6 +84,28 @@ impl FaultKind {
             Self::NegativeTimer => "the PRE or ACC of a TIMER is below 0",
             Self::Deleted => "a reference points to an object that was deleted",
             Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",
+            Self::Raised => "an exception was raised",
+        }
+    }
+
+    /// Whether a program may handle it and go on (CODESYS' `__TRY`). It may not go on where a loop has no end, as that would
+    /// defeat the budget; nor where a test has failed, or what it would call is not there.
+    pub const fn can_be_caught(self) -> bool {
+        match self {
+            Self::LoopBudget | Self::AssertionFailed | Self::NotImplemented => false,
+            Self::DivideByZero
+            | Self::IndexOutOfRange
+            | Self::SubrangeViolated
+            | Self::ZeroStep
+            | Self::NoSuchDate
+            | Self::NullReference
+            | Self::OutsideObject
+            | Self::MisalignedReference
+            | Self::ForbiddenView
+            | Self::NegativeTimer
+            | Self::Deleted
+            | Self::NotOfPool
+            | Self::Raised => true,
         }
     }
 }
@@ -124,6 +149,12 @@ impl Fault {
     pub const fn of_call(self, at: Location) -> Self {
         let is_callers = self.at.file == 0 && self.at.line == 0 && self.at.column == 0;
         if is_callers { Self { kind: self.kind, at } } else { self }
+    }
+
+    /// The number of its kind, for a program that handles the fault; the fault itself, where it
+    /// [may not](FaultKind::can_be_caught).
+    pub const fn caught(self) -> Result<u8, Self> {
+        if self.kind.can_be_caught() { Ok(self.kind as u8) } else { Err(self) }
     }
 
     /// The fault with this code; `None` for 0, and for what [`code`](Self::code) never gives.

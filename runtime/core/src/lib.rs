@@ -20,6 +20,7 @@ mod turns;
 
 pub mod calendar;
 mod decimal;
+pub mod exception;
 pub mod format;
 pub mod literal;
 pub mod reference;

@@ -34,6 +34,7 @@ mod classes;
 mod construction;
 mod dates;
 mod edges;
+mod exceptions;
 mod expressions;
 mod functions;
 mod operators;

@@ -53,6 +53,8 @@ pub struct Machine<'a> {
     pub(crate) is_again: bool,
     pub(crate) context: Context,
     steps: u32,
+    /// The exception that was raised last.
+    pub(crate) raised: u32,
     /// Where the ENO of the call leads whose arguments are evaluated.
     pub(crate) eno: Option<Place<'a>>,
 }
@@ -89,6 +91,7 @@ impl<'a> Machine<'a> {
             is_again: false,
             context: Context::default(),
             steps: 0,
+            raised: 0,
             eno: None,
         };
         this.start_images();

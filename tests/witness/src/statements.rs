@@ -47,6 +47,7 @@ impl<'a> Machine<'a> {
             }
             StatementKind::While { condition, body } => self.repeat_while(frame, condition, body),
             StatementKind::Repeat { body, until } => self.repeat_until(frame, body, until),
+            StatementKind::Try(it) => self.try_statement(frame, it),
             StatementKind::Exit => Ok(Flow::Exit),
             StatementKind::Continue => Ok(Flow::Continue),
             StatementKind::Return => Ok(Flow::Return),
@@ -101,7 +102,10 @@ impl<'a> Machine<'a> {
 
     fn lone_call(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Flow> {
         match &expr.kind {
-            ExprKind::Call(callee, arguments) => self.call(frame, callee, arguments, None).map(|_| Flow::Next),
+            ExprKind::Call(callee, arguments) => {
+                self.raise(frame, callee, arguments, expr.span)?;
+                self.call(frame, callee, arguments, None).map(|_| Flow::Next)
+            }
             _ => unknown("an expression as a statement"),
         }
     }

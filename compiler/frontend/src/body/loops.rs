@@ -245,6 +245,9 @@ fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
             arms.iter().any(|arm| within(&arm.body)) || otherwise.as_deref().is_some_and(within)
         }
         Ast::For { body, .. } | Ast::While { body, .. } | Ast::Repeat { body, .. } => has_way_out(body, false),
+        Ast::Try(it) => {
+            within(&it.body) || within(&it.handler) || it.finally.as_ref().is_some_and(|it| within(&it.body))
+        }
         Ast::Empty
         | Ast::Assign { .. }
         | Ast::AssignAll { .. }

@@ -1,5 +1,6 @@
 //! Statements of a body, and what they assign.
 
+use super::exception::is_raise;
 use crate::expr::call_tracking::{Call, Instance};
 use crate::expr::checker::Checker;
 use crate::expr::start::is_start_of_members;
@@ -63,6 +64,7 @@ impl<'s> Checker<'_, 's> {
             | Ast_::If { .. }
             | Ast_::While { .. }
             | Ast_::Repeat { .. }
+            | Ast_::Try(_)
             | Ast_::Exit
             | Ast_::Continue
             | Ast_::Return => {
@@ -93,6 +95,7 @@ impl<'s> Checker<'_, 's> {
             Ast_::If { branches, otherwise } => self.branches(branches, otherwise.as_deref()),
             Ast_::While { condition, body } => self.while_loop(condition, body, span),
             Ast_::Repeat { body, until } => self.repeat_loop(body, until, span),
+            Ast_::Try(it) => self.try_statement(it, span),
             Ast_::Exit => self.leave_loop("EXIT", StatementKind::Exit, span),
             Ast_::Continue => self.leave_loop("CONTINUE", StatementKind::Continue, span),
             Ast_::Return => self.push(StatementKind::Return, span),
@@ -134,6 +137,8 @@ impl<'s> Checker<'_, 's> {
             Ast::Call(callee, arguments) => {
                 if is_start_of_members(callee) {
                     self.start_members(expr.span);
+                } else if is_raise(callee) {
+                    self.raise(arguments, expr.span);
                 } else if self.test_statement(callee, arguments, expr.span).is_none()
                     && self.suite_statement(callee, arguments, expr.span).is_none()
                     && self.axunit_statement(callee, arguments, expr.span).is_none()

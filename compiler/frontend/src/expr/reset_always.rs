@@ -128,7 +128,12 @@ fn may_leave(statements: &[ast::Statement<'_>]) -> bool {
         let mut inside = false;
         ast::each_body(it, &mut |body| inside |= may_leave(body));
         let leaves = match it.kind {
-            StatementKind::Exit | StatementKind::Continue | StatementKind::Return | StatementKind::ReturnIf(_) => true,
+            StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::ReturnIf(_)
+            // A fault leaves what comes after it.
+            | StatementKind::Try(_) => true,
             StatementKind::Error
             | StatementKind::Empty
             | StatementKind::Assign { .. }

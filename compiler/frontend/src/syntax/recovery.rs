@@ -80,7 +80,7 @@ fn skip_block(input: &mut In<'_, '_, '_>) {
         if kind == Kind::End || is_pou_end(kind) || opens_item(kind) {
             return;
         }
-        let opens = matches!(kind, Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat);
+        let opens = matches!(kind, Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat | Kind::Try);
         let ends = is_end(kind);
         input.take();
         depth += usize::from(opens);

@@ -2,7 +2,7 @@
 //! and reading goes on at the next one.
 
 use crate::{
-    ast::{Arm, Expr, ExprKind, Label, MAX_CHAIN, Statement, StatementKind},
+    ast::{Arm, Expr, ExprKind, Finally, Label, MAX_CHAIN, Statement, StatementKind, Try},
     lex::Kind,
     source::Span,
 };
@@ -74,6 +74,7 @@ fn statement_kind<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         Kind::For => for_loop(input),
         Kind::While => while_loop(input),
         Kind::Repeat => repeat(input),
+        Kind::Try => try_statement(input),
         Kind::Exit => word(input, StatementKind::Exit),
         Kind::Continue => word(input, StatementKind::Continue),
         Kind::Return => return_statement(input),
@@ -528,4 +529,39 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     input.eat(Kind::Semicolon);
     close(input, Kind::EndRepeat, opened);
     Ok(StatementKind::Repeat { body, until: until.unwrap_or_else(|_| unread(opened)) })
+}
+
+fn try_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
+    let opened = input.take();
+    input.state().open.push((Kind::EndTry, opened));
+    let body = statements(input);
+    let mut exception = None;
+    let mut handler = Vec::new();
+    if input.eat(Kind::Catch).is_some() {
+        match caught(input) {
+            Ok(found) => exception = found,
+            Err(problem) => {
+                diagnostics::report(input, problem);
+                recovery::skip_header(input, Kind::CloseParen, opened);
+            }
+        }
+        handler = statements(input);
+    } else if matches!(input.kind(), Kind::Finally | Kind::EndTry) {
+        let problem = input.problem(Expected::Token(Kind::Catch));
+        diagnostics::report(input, problem);
+    }
+    let finally = input.eat(Kind::Finally).map(|word| Finally { word, body: statements(input) });
+    input.state().open.pop();
+    close(input, Kind::EndTry, opened);
+    Ok(StatementKind::Try(Box::new(Try { word: opened, body, exception, handler, finally })))
+}
+
+/// `(exception)` after `__CATCH`, which may have none.
+fn caught<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Expr<'s>>> {
+    if input.eat(Kind::OpenParen).is_none() || input.eat(Kind::CloseParen).is_some() {
+        return Ok(None);
+    }
+    let exception = postfix(input)?;
+    input.expect(Kind::CloseParen)?;
+    Ok(Some(exception))
 }

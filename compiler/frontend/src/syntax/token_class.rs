@@ -29,7 +29,15 @@ pub fn opens_section(kind: Kind) -> bool {
 pub fn opens_statement(kind: Kind) -> bool {
     matches!(
         kind,
-        Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat | Kind::Exit | Kind::Continue | Kind::Return
+        Kind::If
+            | Kind::Case
+            | Kind::For
+            | Kind::While
+            | Kind::Repeat
+            | Kind::Try
+            | Kind::Exit
+            | Kind::Continue
+            | Kind::Return
     )
 }
 
@@ -50,6 +58,7 @@ pub fn is_end(kind: Kind) -> bool {
             | Kind::EndFor
             | Kind::EndWhile
             | Kind::EndRepeat
+            | Kind::EndTry
             | Kind::EndMethod
             | Kind::EndProperty
             | Kind::EndAction
@@ -71,7 +80,7 @@ pub fn is_pou_end(kind: Kind) -> bool {
 
 /// Keywords that close or continue a block.
 pub fn closes(kind: Kind) -> bool {
-    matches!(kind, Kind::Else | Kind::Elsif | Kind::Until) || is_end(kind)
+    matches!(kind, Kind::Else | Kind::Elsif | Kind::Until | Kind::Catch | Kind::Finally) || is_end(kind)
 }
 
 pub fn ends_statements(kind: Kind) -> bool {
@@ -88,6 +97,7 @@ pub fn partners(kind: Kind) -> [Kind; 2] {
         Kind::Else => [Kind::EndIf, Kind::EndCase],
         Kind::Elsif => [Kind::EndIf; 2],
         Kind::Until => [Kind::EndRepeat; 2],
+        Kind::Catch | Kind::Finally => [Kind::EndTry; 2],
         kind => [kind; 2],
     }
 }
@@ -100,6 +110,7 @@ pub fn end_of(kind: Kind) -> Option<Kind> {
         Kind::For => Kind::EndFor,
         Kind::While => Kind::EndWhile,
         Kind::Repeat => Kind::EndRepeat,
+        Kind::Try => Kind::EndTry,
         Kind::Struct => Kind::EndStruct,
         kind if opens_section(kind) => Kind::EndVar,
         _ => return None,

@@ -1,4 +1,4 @@
-//! Constructs that are known and refused by name: JMP, `__TRY`, VAR_GENERIC, and a sequential function chart's text.
+//! Constructs that are known and refused by name: JMP, VAR_GENERIC, and a sequential function chart's text.
 //! Their words are names everywhere else.
 
 use crate::{
@@ -20,14 +20,6 @@ use super::{
 pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     let span = input.here();
     let word = input.text(span);
-    if word.eq_ignore_ascii_case(TRY) {
-        input.report(
-            diagnostics::unsupported(span, "handling of exceptions by `__TRY`")
-                .help("test before what would fault: a divisor, an index, `__ISVALIDREF(…)`; a fault ends the scan"),
-        );
-        skip_try(input);
-        return true;
-    }
     if let Some(service) = controller_service(word).filter(|_| has_operands_that_are_no_values(input)) {
         input.report(diagnostics::controller_service(span, word, service));
         recovery::skip_operands(input);
@@ -174,22 +166,6 @@ fn has_operands_that_are_no_values(input: &mut In<'_, '_, '_>) -> bool {
         }
     }
     false
-}
-
-const TRY: &str = "__TRY";
-
-/// Behind the `__ENDTRY` of a `__TRY`, which may hold others.
-fn skip_try(input: &mut In<'_, '_, '_>) {
-    let mut depth = 0;
-    while input.kind() != Kind::End && !opens_item(input.kind()) && !is_pou_end(input.kind()) {
-        let word = input.take();
-        let word = input.text(word);
-        depth += i32::from(word.eq_ignore_ascii_case(TRY)) - i32::from(word.eq_ignore_ascii_case("__ENDTRY"));
-        if depth == 0 {
-            input.eat(Kind::Semicolon);
-            return;
-        }
-    }
 }
 
 /// To the end of the POU that a chart is the body of: its steps and actions are left out with it.

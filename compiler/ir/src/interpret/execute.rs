@@ -44,6 +44,7 @@ impl<'p> Interpreter<'p> {
                 return self.turns(frame, body, continuing, count.as_deref(), cx);
             }
             StatementKind::For(it) => return self.for_loop(frame, it, statement.at, cx),
+            StatementKind::Try { body, kind, handler } => return self.attempt(frame, body, (kind, handler), cx),
             StatementKind::Turn if self.has_few_turns => {}
             StatementKind::Turn => cx.take_turn().map_err(|kind| Fault { kind, at: statement.at })?,
             StatementKind::Exit => return Ok(Flow::Exit),
@@ -71,6 +72,28 @@ impl<'p> Interpreter<'p> {
             }
         }
         Ok(Flow::Next)
+    }
+
+    /// Statements whose faults are handled. What a fault has left of the routines that ran is dropped.
+    fn attempt(
+        &mut self,
+        frame: &Frame,
+        body: &'p [Statement],
+        (kind, handler): (&'p Place, &'p [Statement]),
+        cx: &Context,
+    ) -> Result<Flow, Stop> {
+        let (memory, references, has_few_turns) = (self.memory.len(), self.references.len(), self.has_few_turns);
+        let fault = match self.block(frame, body, cx) {
+            Err(Stop::Fault(fault)) => fault,
+            ended => return ended,
+        };
+        let number = fault.caught()?;
+        self.memory.truncate(memory);
+        self.references.truncate(references);
+        self.has_few_turns = has_few_turns;
+        let offset = self.resolve(frame, kind)?;
+        Value::U8(number).write(&mut self.memory[offset..]);
+        self.block(frame, handler, cx)
     }
 
     pub(super) fn step(&mut self) -> Result<(), Stop> {

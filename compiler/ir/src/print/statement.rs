@@ -33,6 +33,11 @@ impl Printer<'_> {
                 self.tail(routine, "continuing", continuing)
             }
             StatementKind::For(it) => self.block(routine, &it.body),
+            StatementKind::Try { body, handler, .. } => {
+                self.block(routine, body)?;
+                self.line(format_args!("caught"))?;
+                self.block(routine, handler)
+            }
             StatementKind::Assign { .. }
             | StatementKind::Turn
             | StatementKind::Exit
@@ -71,6 +76,7 @@ impl Printer<'_> {
             StatementKind::Loop { count: None, .. } => "loop".to_owned(),
             StatementKind::Loop { count: Some(it), .. } => self.count(routine, it),
             StatementKind::For(it) => self.for_head(routine, it),
+            StatementKind::Try { kind, .. } => format!("try {}", self.place(routine, kind)),
             StatementKind::Turn => "turn".to_owned(),
             StatementKind::Exit => "exit".to_owned(),
             StatementKind::Continue => "continue".to_owned(),

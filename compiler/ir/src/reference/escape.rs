@@ -57,6 +57,7 @@ pub fn moves_references(program: &Program, statement: &StatementKind) -> bool {
         | StatementKind::Case { .. }
         | StatementKind::Loop { .. }
         | StatementKind::For(_)
+        | StatementKind::Try { .. }
         | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
@@ -149,6 +150,7 @@ impl<'p> Finder<'p> {
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }
             | StatementKind::For(_)
+        | StatementKind::Try { .. }
             | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue

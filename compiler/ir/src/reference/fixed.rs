@@ -155,7 +155,9 @@ impl Mover<'_> {
                 self.place(block);
                 inputs.iter_mut().for_each(|it| self.expr(it));
             }
-            StatementKind::PrescanBlock { block, .. } => self.place(block),
+            StatementKind::PrescanBlock { block: place, .. } | StatementKind::Try { kind: place, .. } => {
+                self.place(place)
+            }
             StatementKind::Loop { body, .. } => self.take_turns(body, new.at),
             StatementKind::Turn
             | StatementKind::Exit

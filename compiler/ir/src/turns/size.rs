@@ -17,7 +17,8 @@ pub(super) fn size(block: &[Statement]) -> usize {
             StatementKind::Call { .. }
             | StatementKind::External(_)
             | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. } => CALL,
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Try { .. } => CALL,
             StatementKind::Assign { .. }
             | StatementKind::If { .. }
             | StatementKind::Case { .. }

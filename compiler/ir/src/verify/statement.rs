@@ -3,8 +3,8 @@
 use super::Verifier;
 use crate::alias::Frame;
 use crate::{
-    Argument, Arm, Block, ClassKind, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place, Root, Routine,
-    RoutineId, Statement, StatementKind, Step, Type,
+    Argument, Arm, Block, ClassKind, Elementary, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place, Root,
+    Routine, RoutineId, Statement, StatementKind, Step, Type,
 };
 use crate::{loops, taking, turns};
 use staunch_runtime::BlockInfo;
@@ -87,6 +87,17 @@ impl<'p> Verifier<'p> {
                 self.block(&Body { in_continuing: true, ..inside }, continuing);
             }
             StatementKind::For(it) => self.for_loop(body, it, at),
+            StatementKind::Try { body: block, kind, handler } => {
+                self.writable(body, kind, at);
+                let local = matches!(kind.root, Root::Local(_)) && kind.projections.is_empty();
+                self.require(
+                    local && kind.ty == Type::Elementary(Elementary::Usint),
+                    at,
+                    "the kind of a fault that goes to no local USINT",
+                );
+                self.block(body, block);
+                self.block(body, handler);
+            }
             StatementKind::Exit => {
                 self.require(body.in_loop, at, "EXIT outside of a loop");
             }

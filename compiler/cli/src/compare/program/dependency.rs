@@ -120,6 +120,19 @@ impl Walk<'_, '_> {
             StatementKind::Exit | StatementKind::Continue | StatementKind::Return | StatementKind::Fault(_) => {
                 self.each(around, Node::Run(self.id));
             }
+            // What faults decides what else runs.
+            StatementKind::Try { body, kind, .. } => {
+                visit::statements(body, &mut |inner| {
+                    visit::accesses(inner, &mut |place, _| {
+                        let read = self.read(place);
+                        self.each(&read, Node::Run(self.id));
+                    });
+                    if let StatementKind::Call { callee, .. } = &inner.kind {
+                        self.found.add(Node::Run(*callee), Node::Run(self.id));
+                    }
+                });
+                self.write(kind, &[Node::Run(self.id)]);
+            }
             StatementKind::Assign { .. }
             | StatementKind::If { .. }
             | StatementKind::Case { .. }

@@ -218,6 +218,11 @@ impl<'t, 'f> Writer<'t, 'f> {
                 self.statements(body);
                 self.expr(until, true);
             }
+            StatementKind::Try(it) => {
+                self.statements(&it.body);
+                self.statements(&it.handler);
+                it.finally.iter().for_each(|it| self.statements(&it.body));
+            }
             StatementKind::ReturnIf(condition) => self.expr(condition, true),
             StatementKind::Empty
             | StatementKind::Exit

@@ -1,0 +1,50 @@
+//! Statements whose faults are handled.
+
+use crate::function::{Flow, Function};
+use crate::place::PlaceValue;
+use crate::signature::CODE;
+use cranelift_codegen::ir::{self as clif, BlockArg, InstBuilder, condcodes::IntCC, types};
+use staunch_ir::{Block, FaultKind, Place};
+
+impl<'p> Function<'_, 'p> {
+    /// Statements whose faults are handled: they lead to a block of their own, which passes on what may not be caught.
+    pub(crate) fn attempt(&mut self, body: &'p Block, kind: &'p Place, handler: &'p Block) -> Flow {
+        let [caught, after] = [(); 2].map(|()| self.builder.create_block());
+        let around = core::mem::take(&mut self.faults);
+        let mut flow = [self.block(body), Flow::Leaves];
+        if flow[0] == Flow::Continues {
+            self.ins().jump(after, &[]);
+        }
+        let mut is_reached = false;
+        self.builder.append_block_param(caught, CODE);
+        self.end_faults(&mut |this, code| {
+            is_reached = true;
+            this.ins().jump(caught, &[BlockArg::Value(code)]);
+        });
+        self.faults = around;
+        if is_reached {
+            self.go_on_in(caught);
+            flow[1] = self.handle(caught, kind, handler);
+            if flow[1] == Flow::Continues {
+                self.ins().jump(after, &[]);
+            }
+        }
+        self.join(&flow, after)
+    }
+
+    fn handle(&mut self, caught: clif::Block, kind: &Place, handler: &'p Block) -> Flow {
+        let code = self.builder.block_params(caught)[0];
+        let number = self.ins().ireduce(types::I8, code);
+        for fatal in FaultKind::ALL.into_iter().filter(|it| !it.can_be_caught()) {
+            let is_it = self.ins().icmp_imm_u(IntCC::Equal, number, i64::from(fatal as u8));
+            let (passing, next) = (self.passing_block(), self.builder.create_block());
+            self.ins().brif(is_it, passing, &[BlockArg::Value(code)], next, &[]);
+            self.go_on_in(next);
+        }
+        match self.place_value(kind) {
+            PlaceValue::Variable(variable) => self.builder.def_var(variable, number),
+            PlaceValue::Memory(address) => self.store(number, address),
+        }
+        self.block(handler)
+    }
+}
