@@ -127,6 +127,12 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// `-a ** b` is `-(a ** b)`: a sign is applied after a power. (MOTION-RM002, "order of operations"; S7-1200 manual,
+    /// "operators of SCL")
+    pub const fn raises_before_signs(self) -> bool {
+        matches!(self, Self::Logix | Self::Siemens)
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

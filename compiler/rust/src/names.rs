@@ -160,7 +160,8 @@ impl Names {
         let routines = routine_names(program, origins);
         let mut locals = Scope::with(LOCALS);
         locals.taken.extend(shared.then(|| "machine".to_owned()));
-        locals.taken.extend(routines.iter().map(Ident::to_string));
+        // As they are claimed: a keyword without its `r#`.
+        locals.taken.extend(routines.iter().map(|it| it.to_string().trim_start_matches("r#").to_owned()));
         Self {
             enums,
             enumerators: program

@@ -6,7 +6,7 @@ use crate::references::{is_null, null};
 use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
-use staunch_frontend::ast::{BinaryOp, Expr};
+use staunch_frontend::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use staunch_runtime::{Family, FaultKind, Outcome as _, Repr, Scalar as _, Value as Scalar, ops, with_repr};
 
 impl<'a> Machine<'a> {
@@ -26,6 +26,18 @@ impl<'a> Machine<'a> {
             return if decided { Ok(first) } else { self.value_as(frame, right, &Type::BOOL) };
         }
         let asked = asked.filter(|_| !compares(op));
+        if op == BinaryOp::Power && self.declared.family == Family::Logix {
+            match &left.kind {
+                ExprKind::Unary(UnaryOp::Plus, base) => return self.binary(frame, op, base, right, at, asked),
+                ExprKind::Unary(UnaryOp::Neg, base) => {
+                    let power = self.binary(frame, op, base, right, at, asked)?;
+                    let Some(ty) = power.ty.elementary() else { return unknown("a power that is no number") };
+                    return self.computed("NEG", ty, &[power.as_scalar()?], at);
+                }
+                ExprKind::Binary(_, BinaryOp::Power, _) => return unknown("a power of a power"),
+                _ => {}
+            }
+        }
         let (a, b) = self.sides(frame, left, right, asked)?;
         self.operate(op, a, b, at, asked)
     }

@@ -21,6 +21,14 @@ impl<'s> Checker<'_, 's> {
         if matches!(op, BinaryOp::AndThen | BinaryOp::OrElse) {
             return self.short_circuit(left, op, right, span).map(Operand::Typed);
         }
+        if op == BinaryOp::Power
+            && self.decl.dialect(op_span).raises_before_signs()
+            && let Some((sign, base)) = leading_sign(left)
+        {
+            let power = ast::ExprKind::Binary(Box::new([base, right.clone()]), op, op_span);
+            let power = Box::new(ast::Expr { kind: power, span });
+            return self.operand(&ast::Expr { kind: ast::ExprKind::Unary(sign, power), span }, expected);
+        }
         let hint = expected.filter(|_| !compares(op));
         // Both sides are checked before giving up, so that one run reports every mistake.
         let a = self.operand(left, hint);
@@ -612,5 +620,18 @@ fn is_zero(value: Option<Value>) -> bool {
         Some(Value::F32(it)) => it == 0.0,
         Some(Value::F64(it)) => it == 0.0,
         Some(_) | None => false,
+    }
+}
+
+/// The sign that a power begins with, and the power without it: `-a ** b`.
+fn leading_sign<'s>(power: &ast::Expr<'s>) -> Option<(ast::UnaryOp, ast::Expr<'s>)> {
+    match &power.kind {
+        ast::ExprKind::Unary(sign @ (ast::UnaryOp::Neg | ast::UnaryOp::Plus), base) => Some((*sign, (**base).clone())),
+        ast::ExprKind::Binary(sides, BinaryOp::Power, at) => {
+            let (sign, base) = leading_sign(&sides[0])?;
+            let sides = Box::new([base, sides[1].clone()]);
+            Some((sign, ast::Expr { kind: ast::ExprKind::Binary(sides, BinaryOp::Power, *at), span: power.span }))
+        }
+        _ => None,
     }
 }

@@ -20,6 +20,9 @@ use staunch_ir::{
 /// The lower half of a reference's bits: its address.
 const ADDRESS: u64 = 0xFFFF_FFFF;
 
+/// The same, with the number of the class: an instance and its first member lie at one address.
+const INSTANCE: u64 = ADDRESS | u64::MAX << staunch_runtime::reference::CLASS;
+
 /// What is called like a function, and takes a variable rather than its value.
 #[derive(Clone, Copy)]
 enum Function {
@@ -542,12 +545,16 @@ impl<'s> Checker<'_, 's> {
 
     /// The address as an LWORD.
     fn address_bits(&mut self, value: Expr) -> Expr {
+        self.masked(value, ADDRESS)
+    }
+
+    fn masked(&mut self, value: Expr, mask: u64) -> Expr {
         let (lword, at) = (Type::Elementary(Elementary::Lword), value.at);
         if is_null(&value) {
             return Expr::constant(Elementary::Lword, Value::U64(0), at);
         }
         let bits = self.convert(Conversion::Same, lword, value);
-        let mask = Expr::constant(Elementary::Lword, Value::U64(ADDRESS), at);
+        let mask = Expr::constant(Elementary::Lword, Value::U64(mask), at);
         Expr::apply(Op::And, lword, vec![bits, mask], at)
     }
 
@@ -602,11 +609,11 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
-    /// An operand as an address, for a comparison.
-    fn as_address(&mut self, operand: Operand, span: Span) -> Option<Expr> {
+    /// An operand as an address, for a comparison; of a reference, what the mask leaves of it.
+    fn as_address(&mut self, operand: Operand, mask: u64, span: Span) -> Option<Expr> {
         let lword = Elementary::Lword;
         match operand.cut() {
-            Operand::Typed(value) if matches!(value.ty, Type::Reference(_)) => Some(self.address_bits(value)),
+            Operand::Typed(value) if matches!(value.ty, Type::Reference(_)) => Some(self.masked(value, mask)),
             Operand::Typed(value) => match value.ty {
                 Type::Elementary(it) if it.repr().is_integer() && !it.is_time() => {
                     Some(self.convert(Conversion::Value, Type::Elementary(lword), value))
@@ -618,7 +625,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn compare_addresses(&mut self, op: BinaryOp, a: (Operand, Span), b: (Operand, Span), span: Span) -> Option<Expr> {
-        let (a, b) = (self.as_address(a.0, a.1)?, self.as_address(b.0, b.1)?);
+        let of_interface = |it: &Operand| it.ty().is_some_and(|ty| self.decl.interface_of(ty).is_some());
+        let mask = if of_interface(&a.0) && of_interface(&b.0) { INSTANCE } else { ADDRESS };
+        let (a, b) = (self.as_address(a.0, mask, a.1)?, self.as_address(b.0, mask, b.1)?);
         let op = super::operator::comparison(op);
         self.apply(op, Type::Elementary(Elementary::Lword), vec![a, b], Type::BOOL, span)
     }
@@ -626,7 +635,7 @@ impl<'s> Checker<'_, 's> {
     /// How many bytes lie between two addresses.
     fn distance(&mut self, a: Operand, b: Operand, span: Span) -> Option<Expr> {
         let mut number = |operand| {
-            let bits = self.as_address(operand, span)?;
+            let bits = self.as_address(operand, ADDRESS, span)?;
             Some(self.convert(Conversion::Value, Type::LINT, bits))
         };
         let (a, b) = (number(a)?, number(b)?);
