@@ -133,6 +133,12 @@ impl Dialect {
         matches!(self, Self::Logix | Self::Siemens)
     }
 
+    /// The arguments of a call without names are in the order in which the parameters are declared, outputs among them.
+    /// (IEC 61131-3, 6.6.1.4.2, "non-formal call")
+    pub const fn binds_outputs_in_order(self) -> bool {
+        matches!(self, Self::Iec | Self::Cscape | Self::Openplc)
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

@@ -10,7 +10,7 @@ use crate::storage::{Cell, Place, Value};
 use crate::types::Type;
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, Expr, ExprKind, Name, PouKind, VarKind};
-use staunch_runtime::{BlockInfo, Direction, Value as Scalar};
+use staunch_runtime::{BlockInfo, Direction, Family, Value as Scalar};
 
 /// A parameter, and what a call gives it.
 pub(crate) struct Passed<'a> {
@@ -525,8 +525,12 @@ impl<'a> Machine<'a> {
                 ArgumentKind::Positional(value) => {
                     let outputs_last =
                         |last: bool| formals.iter().filter(move |it| (it.kind == VarKind::Output) == last);
-                    let mut free = outputs_last(false).chain(outputs_last(true));
-                    let free = free.find(|it| !taken.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
+                    // The standard: "in exactly the same order" as they are declared.
+                    let mut free: Vec<&Formal<'a>> = match self.declared.family {
+                        Family::Iec | Family::Cscape | Family::Openplc => formals.iter().collect(),
+                        Family::Codesys | Family::Logix => outputs_last(false).chain(outputs_last(true)).collect(),
+                    };
+                    let free = free.drain(..).find(|it| !taken.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
                     let Some(free) = free else { return unknown("an argument too many") };
                     (free.name, Some(value), false)
                 }

@@ -26,8 +26,8 @@ pub(crate) struct Parameter<'n> {
 }
 
 impl<'s> Checker<'_, 's> {
-    /// Matches arguments to parameters. Positional ones take the next free parameter: inputs and
-    /// in-outs first, then outputs.
+    /// Matches arguments to parameters. Positional ones take the next free parameter: in the order in which
+    /// they are declared, or inputs and in-outs first, then outputs.
     pub(crate) fn bind<'a>(
         &mut self,
         owner: &str,
@@ -40,7 +40,12 @@ impl<'s> Checker<'_, 's> {
             let is_output = move |it: &Section| (*it == Section::Output) == output;
             (0..parameters.len()).filter(move |at| is_output(&parameters[*at].section))
         };
-        let order: Vec<_> = outputs_last(false).chain(outputs_last(true)).collect();
+        let as_declared = arguments.first().is_some_and(|it| self.decl.dialect(it.span).binds_outputs_in_order());
+        let order: Vec<_> = if as_declared {
+            (0..parameters.len()).collect()
+        } else {
+            outputs_last(false).chain(outputs_last(true)).collect()
+        };
         let mut complete = true;
         let mut compared = false;
         for (number, argument) in arguments.iter().enumerate() {
