@@ -159,7 +159,9 @@ fn beside(ty: &Type<'_>, kind: Untyped, number: Option<i128>, asked: Option<&Typ
         Untyped::Real => {
             let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
             let real = if asks { Elementary::Lreal } else { Elementary::Real };
-            Ok(ty.meets(real).unwrap_or(real))
+            // In CODESYS and Logix an LREAL, where they meet 64 bits.
+            let long = ty.as_number().is_integer() && ty.repr().size() == 8;
+            Ok(ty.meets(real).unwrap_or(if long { Elementary::Lreal } else { real }))
         }
     }
 }

@@ -25,12 +25,21 @@ impl<'a> Machine<'a> {
             let order = |it: &Elementary| (it.repr().size(), !it.repr().is_unsigned());
             return [a, b].into_iter().max_by_key(order);
         }
-        a.meets(b).or_else(|| self.widening(a).meets(self.widening(b)))
+        let long_with_real = |x: Elementary, y: Elementary| {
+            x.is_real() && self.widening(y).is_integer() && y.repr().size() == 8 && self.mixes_long_and_real()
+        };
+        let known = a.meets(b).or_else(|| self.widening(a).meets(self.widening(b)));
+        known.or_else(|| (long_with_real(a, b) || long_with_real(b, a)).then_some(Elementary::Lreal))
     }
 
     /// Whether a value is taken where one of `to` is asked for.
     pub(crate) fn widens(&self, from: Elementary, to: Elementary) -> bool {
         from.widens_to(to) || self.widening(from).widens_to(self.widening(to))
+    }
+
+    /// Both make an LREAL of 64 bits beside a real.
+    fn mixes_long_and_real(&self) -> bool {
+        matches!(self.declared.family, Family::Codesys | Family::Logix)
     }
 
     /// In CODESYS a bit string is an unsigned number too.

@@ -149,7 +149,7 @@ impl<'s> Checker<'_, 's> {
         }
         let op = sides.op.text();
         let mut error = Diagnostic::new(Code::E0204, sides.op_span, format!("`{op}` does not take {a} and {b}"))
-            .label(wants.to_owned())
+            .label(if long_with_real(sides).is_some() { "no type holds the values of both" } else { wants })
             .other(sides.left, format!("this is {a}"))
             .other(sides.right, format!("this is {b}"));
         if let Some(help) = self.help_for_sides(sides) {
@@ -192,6 +192,9 @@ impl<'s> Checker<'_, 's> {
             }
             (Some(Type::Elementary(it)), Some(Type::Enum(_))) if it.is_integer() => {
                 Some(format!("write `TO_{}({b})`", it.name()))
+            }
+            _ if let Some((ty, span)) = long_with_real(sides) => {
+                Some(format!("an LREAL may round it: write `{}_TO_LREAL({})`", ty.name(), text(span)))
             }
             (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_day() && y.is_duration() => {
                 Some(format!("count from its midnight: `{}_TO_{}({a}) {} {b}`", x.name(), point(x), sides.op.text()))
@@ -512,6 +515,21 @@ pub(super) struct Meeting {
 }
 
 /// The type in which sides of these types meet, where `None` is a literal's.
+/// The side that is an integer of 64 bits, where the other one is a real.
+fn long_with_real(sides: &Sides) -> Option<(Elementary, Span)> {
+    [(&sides.a, sides.left, &sides.b), (&sides.b, sides.right, &sides.a)].into_iter().find_map(|(side, span, other)| {
+        let Some(Type::Elementary(ty)) = side.ty() else { return None };
+        (ty.is_integer() && ty.repr().size() == 8 && is_real(other)).then_some((ty, span))
+    })
+}
+
+fn is_real(operand: &Operand) -> bool {
+    match operand {
+        Operand::Real { .. } => true,
+        typed => matches!(typed.ty(), Some(Type::Elementary(it)) if it.is_real()),
+    }
+}
+
 fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> Option<Elementary> {
     let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
     let literal = |ty: Elementary, it: &Operand| literal_meets(number(ty), ty, it, sides.hint, join);
