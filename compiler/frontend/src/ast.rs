@@ -616,6 +616,10 @@ pub enum StatementKind<'s> {
         until: Expr<'s>,
     },
     Try(Box<Try<'s>>),
+    /// `name:`, where a jump goes on.
+    Label(Name<'s>),
+    /// `JMP name`
+    Jump(Name<'s>),
     Exit,
     Continue,
     Return,
@@ -850,6 +854,8 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
         | StatementKind::Bind { .. }
         | StatementKind::Attempt { .. }
         | StatementKind::Expr(_)
+        | StatementKind::Label(_)
+        | StatementKind::Jump(_)
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
@@ -858,11 +864,21 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
     }
 }
 
+/// Calls `see` with each statement, at any depth.
+pub(crate) fn each_statement<'a, 's>(statements: &'a [Statement<'s>], see: &mut dyn FnMut(&'a Statement<'s>)) {
+    for statement in statements {
+        see(statement);
+        each_body(statement, &mut |body| each_statement(body, see));
+    }
+}
+
 /// Calls `visit` with every expression in the statements, outer ones first.
 pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn FnMut(&'a Expr<'s>)) {
     for statement in statements {
         match &statement.kind {
             StatementKind::Empty
+            | StatementKind::Label(_)
+            | StatementKind::Jump(_)
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return

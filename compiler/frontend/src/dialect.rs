@@ -139,6 +139,11 @@ impl Dialect {
         matches!(self, Self::Iec | Self::Cscape | Self::Openplc)
     }
 
+    /// `JMP label`, and GOTO of SCL, which is read as that.
+    pub const fn has_jumps(self) -> bool {
+        matches!(self, Self::Codesys | Self::Siemens)
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

@@ -106,6 +106,7 @@ impl Mutants<'_> {
             | StatementKind::Expr(_)
             | StatementKind::Exit
             | StatementKind::Continue
+            | StatementKind::Jump(_)
             | StatementKind::Return => self.add(statement.span, ";"),
             StatementKind::If { branches, .. } => branches.iter().for_each(|it| self.negated(&it.0)),
             StatementKind::While { condition, .. } | StatementKind::ReturnIf(condition) => self.negated(condition),
@@ -114,6 +115,7 @@ impl Mutants<'_> {
             | StatementKind::Case { .. }
             | StatementKind::For { .. }
             | StatementKind::Try(_)
+            | StatementKind::Label(_)
             | StatementKind::Error => {}
         }
     }

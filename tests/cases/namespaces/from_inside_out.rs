@@ -135,8 +135,8 @@ pub fn outer_only_outer() -> i16 {
 /// FUNCTION Outer.From_Outer (from_inside_out.st:14)
 #[rustfmt::skip]
 pub fn outer_from_outer() -> i16 {
-    let r#where: i16 = outer_where(); // :15
-    r#where
+    let where_2: i16 = outer_where(); // :15
+    where_2
 }
 
 /// FUNCTION Outer.Inner.Where (from_inside_out.st:27)
@@ -147,9 +147,9 @@ pub fn outer_inner_where() -> i16 {
 
 /// FUNCTION Outer.Inner.From_Inner (from_inside_out.st:18)
 pub fn outer_inner_from_inner() -> i16 {
-    let r#where: i16 = outer_inner_where(); // :19
+    let where_2: i16 = outer_inner_where(); // :19
     let only_outer: i16 = outer_only_outer();
-    r#where.wrapping_add(only_outer)
+    where_2.wrapping_add(only_outer)
 }
 
 /// FUNCTION Other.Only_Other (from_inside_out.st:39)
@@ -160,9 +160,9 @@ pub fn other_only_other() -> i16 {
 
 /// FUNCTION Outer.Inner.From_Second_Part (from_inside_out.st:30)
 pub fn outer_inner_from_second_part() -> i16 {
-    let r#where: i16 = outer_inner_where(); // :31
+    let where_2: i16 = outer_inner_where(); // :31
     let only_other: i16 = other_only_other();
-    r#where.wrapping_add(only_other)
+    where_2.wrapping_add(only_other)
 }
 
 /// FUNCTION Other.Where (from_inside_out.st:36)
@@ -176,15 +176,15 @@ pub fn other_where() -> i16 {
 /// A USING of a POU is the POU's alone, and comes before what is around it.
 #[rustfmt::skip]
 pub fn from_used() -> i16 {
-    let r#where: i16 = other_where(); // :47
-    r#where
+    let where_2: i16 = other_where(); // :47
+    where_2
 }
 
 /// FUNCTION From_Root (from_inside_out.st:50)
 #[rustfmt::skip]
 pub fn from_root() -> i16 {
-    let r#where: i16 = r#where(); // :51
-    r#where
+    let where_2: i16 = r#where(); // :51
+    where_2
 }
 
 // Debuggers, hosts and native code rely on this layout.

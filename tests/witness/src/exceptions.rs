@@ -8,7 +8,7 @@ use staunch_frontend::ast::{Argument, ArgumentKind, Expr, ExprKind, Try};
 use staunch_runtime::{FaultKind, Value as Scalar};
 
 impl<'a> Machine<'a> {
-    pub(crate) fn try_statement(&mut self, frame: &Frame<'a>, it: &'a Try<'a>) -> Outcome<Flow> {
+    pub(crate) fn try_statement(&mut self, frame: &Frame<'a>, it: &'a Try<'a>) -> Outcome<Flow<'a>> {
         let (memory, eno) = (self.memory.len(), self.eno.take());
         let mut flow = self.block(frame, &it.body);
         self.eno = eno;

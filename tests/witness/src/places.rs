@@ -135,7 +135,7 @@ impl<'a> Machine<'a> {
         part: &Name<'a>,
         value: &'a Expr<'a>,
         at: Span,
-    ) -> Outcome<Flow> {
+    ) -> Outcome<Flow<'a>> {
         let part = part_named(part.text)?;
         let value = self.value_as(frame, value, &Type::Elementary(part.ty))?.as_integer()?;
         let Some(ty) = place.ty.elementary() else { return unknown("bits of what is no number") };

@@ -119,7 +119,7 @@ impl<'a> Machine<'a> {
     }
 
     /// `r REF= x`
-    pub(crate) fn bind(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow> {
+    pub(crate) fn bind(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow<'a>> {
         let target = self.unfollowed(frame, target)?;
         let value = self.reference_value(frame, value, &target.ty)?;
         let target = self.checked(target)?;
@@ -128,7 +128,12 @@ impl<'a> Machine<'a> {
     }
 
     /// `a ?= b`: `b`, where it leads to what `a` may refer to; else nothing.
-    pub(crate) fn attempt(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow> {
+    pub(crate) fn attempt(
+        &mut self,
+        frame: &Frame<'a>,
+        target: &'a Expr<'a>,
+        value: &'a Expr<'a>,
+    ) -> Outcome<Flow<'a>> {
         let target = self.unfollowed(frame, target)?;
         let Type::Reference(reference) = target.ty else { return unknown("?= to what is no reference") };
         let value = self.reference_value(frame, value, &target.ty)?;

@@ -10,25 +10,37 @@ use staunch_runtime::FaultKind;
 
 /// How a statement ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Flow {
+pub(crate) enum Flow<'a> {
     Next,
     Exit,
     Continue,
     Return,
+    /// To a label, which may be further out.
+    Jump(&'a str),
+}
+
+fn is_label(statement: &Statement<'_>, wanted: &str) -> bool {
+    matches!(statement.kind, StatementKind::Label(name) if name.text.eq_ignore_ascii_case(wanted))
 }
 
 impl<'a> Machine<'a> {
-    pub(crate) fn block(&mut self, frame: &Frame<'a>, statements: &'a [Statement<'a>]) -> Outcome<Flow> {
-        for statement in statements {
-            let flow = self.statement(frame, statement)?;
-            if flow != Flow::Next {
-                return Ok(flow);
+    pub(crate) fn block(&mut self, frame: &Frame<'a>, statements: &'a [Statement<'a>]) -> Outcome<Flow<'a>> {
+        let mut at = 0;
+        while let Some(statement) = statements.get(at) {
+            at += 1;
+            match self.statement(frame, statement)? {
+                Flow::Next => {}
+                Flow::Jump(name) => match statements.iter().position(|it| is_label(it, name)) {
+                    Some(label) => at = label,
+                    None => return Ok(Flow::Jump(name)),
+                },
+                flow => return Ok(flow),
             }
         }
         Ok(Flow::Next)
     }
 
-    fn statement(&mut self, frame: &Frame<'a>, statement: &'a Statement<'a>) -> Outcome<Flow> {
+    fn statement(&mut self, frame: &Frame<'a>, statement: &'a Statement<'a>) -> Outcome<Flow<'a>> {
         self.step()?;
         match &statement.kind {
             StatementKind::Empty => Ok(Flow::Next),
@@ -48,6 +60,8 @@ impl<'a> Machine<'a> {
             StatementKind::While { condition, body } => self.repeat_while(frame, condition, body),
             StatementKind::Repeat { body, until } => self.repeat_until(frame, body, until),
             StatementKind::Try(it) => self.try_statement(frame, it),
+            StatementKind::Label(_) => Ok(Flow::Next),
+            StatementKind::Jump(name) => Ok(Flow::Jump(name.text)),
             StatementKind::Exit => Ok(Flow::Exit),
             StatementKind::Continue => Ok(Flow::Continue),
             StatementKind::Return => Ok(Flow::Return),
@@ -59,7 +73,7 @@ impl<'a> Machine<'a> {
     }
 
     /// The target is found before the value is computed: it is written first.
-    fn assign(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow> {
+    fn assign(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>) -> Outcome<Flow<'a>> {
         if let ExprKind::Part(base, part) = &target.kind {
             let place = self.place(frame, base)?;
             return self.assign_part(frame, &place, part, value, target.span);
@@ -91,7 +105,13 @@ impl<'a> Machine<'a> {
     }
 
     /// `x S= c` sets x while c is TRUE, `x R= c` resets it.
-    fn set_reset(&mut self, frame: &Frame<'a>, target: &'a Expr<'a>, value: &'a Expr<'a>, set: bool) -> Outcome<Flow> {
+    fn set_reset(
+        &mut self,
+        frame: &Frame<'a>,
+        target: &'a Expr<'a>,
+        value: &'a Expr<'a>,
+        set: bool,
+    ) -> Outcome<Flow<'a>> {
         let place = self.place(frame, target)?;
         if self.value_as(frame, value, &Type::BOOL)?.as_bool()? {
             let place = self.checked(place)?;
@@ -100,7 +120,7 @@ impl<'a> Machine<'a> {
         Ok(Flow::Next)
     }
 
-    fn lone_call(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Flow> {
+    fn lone_call(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Flow<'a>> {
         match &expr.kind {
             ExprKind::Call(callee, arguments) => {
                 self.raise(frame, callee, arguments, expr.span)?;
@@ -115,7 +135,7 @@ impl<'a> Machine<'a> {
         frame: &Frame<'a>,
         branches: &'a [(Expr<'a>, Vec<Statement<'a>>)],
         otherwise: Option<&'a [Statement<'a>]>,
-    ) -> Outcome<Flow> {
+    ) -> Outcome<Flow<'a>> {
         for (condition, body) in branches {
             if self.condition(frame, condition)? {
                 return self.block(frame, body);
@@ -135,7 +155,7 @@ impl<'a> Machine<'a> {
         selector: &'a Expr<'a>,
         arms: &'a [Arm<'a>],
         otherwise: Option<&'a [Statement<'a>]>,
-    ) -> Outcome<Flow> {
+    ) -> Outcome<Flow<'a>> {
         let selector = self.value(frame, selector, None)?;
         if let Type::Text(_) = selector.ty {
             return self.select_text(frame, &selector, arms, otherwise);
@@ -162,7 +182,7 @@ impl<'a> Machine<'a> {
         selector: &Value<'a>,
         arms: &'a [Arm<'a>],
         otherwise: Option<&'a [Statement<'a>]>,
-    ) -> Outcome<Flow> {
+    ) -> Outcome<Flow<'a>> {
         for arm in arms {
             for label in &arm.labels {
                 if self.value(frame, &label.low, None)?.as_text()? == selector.as_text()? {
@@ -184,7 +204,7 @@ impl<'a> Machine<'a> {
         by: Option<&'a Expr<'a>>,
         body: &'a [Statement<'a>],
         at: Span,
-    ) -> Outcome<Flow> {
+    ) -> Outcome<Flow<'a>> {
         let place = self.place(frame, counter)?;
         let place = self.checked(place)?;
         let Some(base) = place.ty.elementary() else { return unknown("a counter that is no integer") };
@@ -209,7 +229,7 @@ impl<'a> Machine<'a> {
             self.step()?;
             match self.block(frame, body)? {
                 Flow::Exit => break,
-                Flow::Return => return Ok(Flow::Return),
+                flow @ (Flow::Return | Flow::Jump(_)) => return Ok(flow),
                 Flow::Next | Flow::Continue => {}
             }
             now = self.read(&place).as_integer()? + step;
@@ -225,24 +245,29 @@ impl<'a> Machine<'a> {
         Ok(Flow::Next)
     }
 
-    fn repeat_while(&mut self, frame: &Frame<'a>, condition: &'a Expr<'a>, body: &'a [Statement<'a>]) -> Outcome<Flow> {
+    fn repeat_while(
+        &mut self,
+        frame: &Frame<'a>,
+        condition: &'a Expr<'a>,
+        body: &'a [Statement<'a>],
+    ) -> Outcome<Flow<'a>> {
         while self.condition(frame, condition)? {
             self.step()?;
             match self.block(frame, body)? {
                 Flow::Exit => break,
-                Flow::Return => return Ok(Flow::Return),
+                flow @ (Flow::Return | Flow::Jump(_)) => return Ok(flow),
                 Flow::Next | Flow::Continue => {}
             }
         }
         Ok(Flow::Next)
     }
 
-    fn repeat_until(&mut self, frame: &Frame<'a>, body: &'a [Statement<'a>], until: &'a Expr<'a>) -> Outcome<Flow> {
+    fn repeat_until(&mut self, frame: &Frame<'a>, body: &'a [Statement<'a>], until: &'a Expr<'a>) -> Outcome<Flow<'a>> {
         loop {
             self.step()?;
             match self.block(frame, body)? {
                 Flow::Exit => break,
-                Flow::Return => return Ok(Flow::Return),
+                flow @ (Flow::Return | Flow::Jump(_)) => return Ok(flow),
                 Flow::Next | Flow::Continue => {}
             }
             if self.condition(frame, until)? {

@@ -2,6 +2,7 @@
 //! __CATCH, __FINALLY, __ENDTRY"; Beckhoff, Tc2_System, "F_RaiseException")
 
 use crate::expr::checker::Checker;
+use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::StatementKind as Ast;
 use staunch_ir::{Arm, Elementary, Expr, ExprKind, FaultKind, Location, Place, Statement, StatementKind, Type, Value};
@@ -126,9 +127,11 @@ impl<'s> Checker<'_, 's> {
 
     /// The vendors do not say whether what is left by RETURN, EXIT or CONTINUE passes `__FINALLY`.
     fn refuse_to_pass(&mut self, statements: &[ast::Statement<'s>], finally: Span) {
-        for leaving in leaving(statements, true) {
-            let word = self.decl.log.sources.text(leaving).to_uppercase();
-            let word = word.trim_end_matches(';').trim_end();
+        let mut labels = Vec::new();
+        ast::each_statement(statements, &mut |it| labels.extend(label(it)));
+        for leaving in leaving(statements, &labels, true) {
+            let text = self.decl.log.sources.text(leaving);
+            let word = text.split(|it: char| !it.is_ascii_alphabetic()).next().unwrap_or_default().to_uppercase();
             self.report(
                 Diagnostic::new(Code::E0513, leaving, format!("{word} leaves a `__TRY` that has a `__FINALLY`"))
                     .label("whether `__FINALLY` runs then is not documented")
@@ -152,16 +155,24 @@ fn number(value: u32, ty: Type, at: Location) -> Expr {
 }
 
 /// The statements that leave those, or a loop around them.
-fn leaving(statements: &[ast::Statement<'_>], own: bool) -> Vec<Span> {
+fn leaving(statements: &[ast::Statement<'_>], labels: &[Key<'_>], own: bool) -> Vec<Span> {
     let mut found = Vec::new();
     for statement in statements {
         match statement.kind {
             Ast::Return | Ast::ReturnIf(_) => found.push(statement.span),
             Ast::Exit | Ast::Continue if own => found.push(statement.span),
+            Ast::Jump(name) if !labels.contains(&Key(name.text)) => found.push(statement.span),
             _ => {}
         }
         let is_loop = matches!(statement.kind, Ast::For { .. } | Ast::While { .. } | Ast::Repeat { .. });
-        ast::each_body(statement, &mut |body| found.extend(leaving(body, own && !is_loop)));
+        ast::each_body(statement, &mut |body| found.extend(leaving(body, labels, own && !is_loop)));
     }
     found
+}
+
+fn label<'s>(statement: &ast::Statement<'s>) -> Option<Key<'s>> {
+    match statement.kind {
+        Ast::Label(name) => Some(Key(name.text)),
+        _ => None,
+    }
 }

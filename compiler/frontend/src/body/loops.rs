@@ -236,7 +236,7 @@ fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
     use ast::StatementKind as Ast;
     let within = |body: &[ast::Statement<'_>]| has_way_out(body, own);
     statements.iter().any(|statement| match &statement.kind {
-        Ast::Return | Ast::ReturnIf(_) => true,
+        Ast::Return | Ast::ReturnIf(_) | Ast::Jump(_) => true,
         Ast::Exit => own,
         Ast::If { branches, otherwise } => {
             branches.iter().any(|(_, body)| within(body)) || otherwise.as_deref().is_some_and(within)
@@ -256,6 +256,7 @@ fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
         | Ast::Attempt { .. }
         | Ast::Expr(_)
         | Ast::Continue
+        | Ast::Label(_)
         | Ast::Error => false,
     })
 }

@@ -6,6 +6,7 @@ mod case;
 mod case_text;
 mod exception;
 mod external;
+mod jump;
 mod loops;
 mod statement;
 mod suite;

@@ -20,6 +20,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn statements(&mut self, statements: &[ast::Statement<'s>]) {
+        if statements.iter().any(|it| matches!(it.kind, Ast_::Label(_))) {
+            return self.statements_with_labels(statements);
+        }
         let taken_back = self.called.taken_back.clone();
         let mut left: Option<Span> = None;
         for statement in statements {
@@ -34,7 +37,7 @@ impl<'s> Checker<'_, 's> {
                 }
             }
             self.statement(statement);
-            if matches!(statement.kind, Ast_::Exit | Ast_::Continue | Ast_::Return) {
+            if matches!(statement.kind, Ast_::Exit | Ast_::Continue | Ast_::Return | Ast_::Jump(_)) {
                 left = Some(statement.span);
             }
         }
@@ -46,7 +49,7 @@ impl<'s> Checker<'_, 's> {
         // Nobody wrote it.
         let covered = self.is_covered;
         self.is_covered &= !is_once(statement) && !runs_suites(statement);
-        if !matches!(statement.kind, Ast_::Empty | Ast_::Error) {
+        if !matches!(statement.kind, Ast_::Empty | Ast_::Label(_) | Ast_::Error) {
             self.count_statement(span);
         }
         let made = match &statement.kind {
@@ -65,6 +68,8 @@ impl<'s> Checker<'_, 's> {
             | Ast_::While { .. }
             | Ast_::Repeat { .. }
             | Ast_::Try(_)
+            | Ast_::Label(_)
+            | Ast_::Jump(_)
             | Ast_::Exit
             | Ast_::Continue
             | Ast_::Return => {
@@ -72,6 +77,9 @@ impl<'s> Checker<'_, 's> {
                 Some(())
             }
         };
+        if matches!(statement.kind, Ast_::For { .. } | Ast_::While { .. } | Ast_::Repeat { .. }) {
+            self.pass_jumps(span);
+        }
         self.is_covered = covered;
         if made.is_none() {
             self.left_out.get_or_insert(span);
@@ -83,6 +91,7 @@ impl<'s> Checker<'_, 's> {
         match kind {
             Ast_::Empty
             | Ast_::Error
+            | Ast_::Label(_)
             | Ast_::Assign { .. }
             | Ast_::AssignAll { .. }
             | Ast_::SetReset { .. }
@@ -96,6 +105,7 @@ impl<'s> Checker<'_, 's> {
             Ast_::While { condition, body } => self.while_loop(condition, body, span),
             Ast_::Repeat { body, until } => self.repeat_loop(body, until, span),
             Ast_::Try(it) => self.try_statement(it, span),
+            Ast_::Jump(name) => self.jump(*name, span),
             Ast_::Exit => self.leave_loop("EXIT", StatementKind::Exit, span),
             Ast_::Continue => self.leave_loop("CONTINUE", StatementKind::Continue, span),
             Ast_::Return => self.push(StatementKind::Return, span),
@@ -119,7 +129,7 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    fn leave_loop(&mut self, word: &str, kind: StatementKind, span: Span) {
+    pub(super) fn leave_loop(&mut self, word: &str, kind: StatementKind, span: Span) {
         if self.loops == 0 {
             self.report(
                 Diagnostic::new(Code::E0505, span, format!("{word} is outside of a loop"))
@@ -127,6 +137,9 @@ impl<'s> Checker<'_, 's> {
                     .help("to leave the whole POU, write RETURN"),
             );
             return;
+        }
+        if self.is_in_labels() {
+            return self.leave_labels(&kind, span);
         }
         self.take_counter(span);
         self.push(kind, span);
@@ -327,7 +340,8 @@ impl<'s> Checker<'_, 's> {
     /// too; nothing where the branch does not come back.
     pub(super) fn leave_branch(&mut self, before: usize, body: &[ast::Statement<'s>]) -> Vec<(Instance, Call)> {
         let called = self.called.split_off(before);
-        let leaves = |it: &ast::Statement<'s>| matches!(it.kind, Ast_::Exit | Ast_::Continue | Ast_::Return);
+        let leaves =
+            |it: &ast::Statement<'s>| matches!(it.kind, Ast_::Exit | Ast_::Continue | Ast_::Return | Ast_::Jump(_));
         if body.last().is_some_and(leaves) { Vec::new() } else { called }
     }
 

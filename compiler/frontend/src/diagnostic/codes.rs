@@ -139,6 +139,7 @@ codes! {
     E0511 Error "assignment to an input address";
     E0512 Error "an assignment used as a value";
     E0513 Error "handling of exceptions";
+    E0514 Error "jumps";
     E0901 Error "too large";
     E0902 Error "not supported yet";
     E0903 Error "too many temporary variables";

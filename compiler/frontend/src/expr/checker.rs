@@ -3,9 +3,11 @@
 use super::call_tracking::Called;
 use super::late_target::LateTarget;
 use super::uses::Uses;
+use crate::spelling::Key;
 use crate::testing::suite::WANTED;
 use crate::types::counter::Counter;
 use crate::types::declarations::Declarations;
+use crate::types::jumps::Jumps;
 use crate::types::scope::Scope;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span, ast};
@@ -33,6 +35,9 @@ pub(crate) struct Checker<'d, 's> {
     pub counters: Vec<Counter>,
     /// How many loops are around the statement.
     pub loops: usize,
+    /// The lists with labels around the statement.
+    pub jumps: Vec<Jumps<'s>>,
+    pub known_labels: FxHashSet<Key<'s>>,
     pub uses: Uses,
     pub context: Context,
     /// Instances called so far on the way to this statement.
@@ -87,6 +92,8 @@ impl<'d, 's> Checker<'d, 's> {
             locals: Vec::new(),
             counters: Vec::new(),
             loops: 0,
+            jumps: Vec::new(),
+            known_labels: FxHashSet::default(),
             uses: Uses::default(),
             context,
             called: Called::default(),

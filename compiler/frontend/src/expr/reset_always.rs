@@ -133,7 +133,10 @@ fn may_leave(statements: &[ast::Statement<'_>]) -> bool {
             | StatementKind::Return
             | StatementKind::ReturnIf(_)
             // A fault leaves what comes after it.
-            | StatementKind::Try(_) => true,
+            | StatementKind::Try(_)
+            // What is jumped over, or to, is executed in some scans only.
+            | StatementKind::Label(_)
+            | StatementKind::Jump(_) => true,
             StatementKind::Error
             | StatementKind::Empty
             | StatementKind::Assign { .. }

@@ -2,7 +2,7 @@
 //! and reading goes on at the next one.
 
 use crate::{
-    ast::{Arm, Expr, ExprKind, Finally, Label, MAX_CHAIN, Statement, StatementKind, Try},
+    ast::{Arm, Expr, ExprKind, Finally, Label, MAX_CHAIN, Name, Statement, StatementKind, Try},
     lex::Kind,
     source::Span,
 };
@@ -78,6 +78,13 @@ fn statement_kind<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         Kind::Exit => word(input, StatementKind::Exit),
         Kind::Continue => word(input, StatementKind::Continue),
         Kind::Return => return_statement(input),
+        Kind::Name if unsupported::begins_jump(input) => {
+            input.take();
+            let span = input.take();
+            let name = Name { text: input.text(span), span };
+            end(input)?;
+            Ok(StatementKind::Jump(name))
+        }
         Kind::Name if is_declaration(input) => stray_declaration(input),
         Kind::Name if mock::begins(input) => {
             let call = mock::mock(input)?;
@@ -246,15 +253,9 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
         return Ok(kind);
     }
     if let ExprKind::Name(name) = target.kind {
-        // The JMP is reported.
-        if unsupported::is_jumped_to(input, name.text) {
+        if unsupported::is_jumped_to(input, name.text) || input.state().open.len() <= 1 {
             input.take();
-            return Ok(StatementKind::Error);
-        }
-        if input.state().open.len() <= 1 {
-            let colon = input.take();
-            input.report(diagnostics::unsupported(target.span.to(colon), "a label to jump to"));
-            return Ok(StatementKind::Error);
+            return Ok(StatementKind::Label(name));
         }
     }
     Err(input.problem(Expected::Action))
@@ -446,6 +447,13 @@ fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
     Ok(labels)
 }
 
+/// Whether the name that is next is one that a JMP names.
+fn is_jump_label(input: &mut In<'_, '_, '_>) -> bool {
+    let span = input.here();
+    let text = input.text(span);
+    input.kind() == Kind::Name && unsupported::is_jumped_to(input, text)
+}
+
 /// Whether the tokens ahead are labels: constants up to a `:`. No statement starts with a number.
 fn at_label(input: &mut In<'_, '_, '_>) -> bool {
     if matches!(input.kind(), Kind::Integer | Kind::Based | Kind::Minus | Kind::Prefix) {
@@ -454,6 +462,7 @@ fn at_label(input: &mut In<'_, '_, '_>) -> bool {
     let mut ahead = 0;
     loop {
         match input.kind_ahead(ahead) {
+            Kind::Colon if ahead == 1 && is_jump_label(input) => return false,
             Kind::Colon => return ahead > 0 && input.kind_ahead(ahead + 1) != Kind::Equal,
             Kind::Name | Kind::Dot | Kind::DotDot | Kind::Comma | Kind::Prefix => {}
             Kind::Integer | Kind::Based | Kind::Real | Kind::Time | Kind::Date => {}

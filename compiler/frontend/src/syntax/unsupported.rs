@@ -16,6 +16,11 @@ use super::{
     token_class::{is_pou_end, opens_item},
 };
 
+/// Whether `JMP label` is here.
+pub fn begins_jump(input: &mut In<'_, '_, '_>) -> bool {
+    input.is_word("JMP") && input.kind_ahead(1) == Kind::Name
+}
+
 /// Refuses and skips such a construct, if one starts here.
 pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     let span = input.here();
@@ -32,14 +37,6 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     }
     if input.kind_ahead(1) != Kind::Name {
         return false;
-    }
-    if word.eq_ignore_ascii_case("JMP") {
-        input.report(diagnostics::unsupported(span, "JMP").help(
-            "what it jumps over goes into an IF; what it goes back to into a WHILE or REPEAT, which EXIT leaves and \
-             CONTINUE starts anew",
-        ));
-        recovery::skip_statement(input, span);
-        return true;
     }
     if ["INITIAL_STEP", "STEP", "TRANSITION"].iter().any(|it| word.eq_ignore_ascii_case(it)) {
         input.report(

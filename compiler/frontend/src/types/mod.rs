@@ -12,6 +12,7 @@ pub(crate) mod in_outs;
 pub(crate) mod index;
 pub(crate) mod instances;
 pub(crate) mod interfaces;
+pub(crate) mod jumps;
 mod overload_names;
 pub(crate) mod overloads;
 pub(crate) mod polymorphic;

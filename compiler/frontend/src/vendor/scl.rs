@@ -390,12 +390,7 @@ impl<'t> Scl<'t> {
                 self.replace(place, if has_own { "VAR_OUTPUT ENO : BOOL; END_VAR\n" } else { "" });
             }
             "DB_SPECIFIC" => self.replace(place, ""),
-            "GOTO" => {
-                let label = self.text(self.at).to_owned();
-                let end = self.place(self.at).end;
-                self.at += 1;
-                self.refuse(place.start..end, format!("`GOTO {label}` jumps, and there are no labels"));
-            }
+            "GOTO" => self.replace(place, "JMP"),
             _ if !self.is_body && self.declares(at) => {
                 let ty = self.text(self.after(at) + 1).to_ascii_lowercase();
                 self.locals.insert(self.name(at).to_ascii_lowercase(), ty);

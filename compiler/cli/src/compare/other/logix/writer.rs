@@ -225,6 +225,8 @@ impl<'t, 'f> Writer<'t, 'f> {
             }
             StatementKind::ReturnIf(condition) => self.expr(condition, true),
             StatementKind::Empty
+            | StatementKind::Label(_)
+            | StatementKind::Jump(_)
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
