@@ -197,8 +197,11 @@ impl<'a> Machine<'a> {
 
     /// `p = q`: whether they lead to the same place.
     pub(crate) fn same_place(&self, op: BinaryOp, a: &Value<'a>, b: &Value<'a>) -> Outcome<Value<'a>> {
+        // Two instances may begin at one place, of which one is in the other; addresses are the same then.
+        let of_interface = |it: &Value<'a>| matches!(&it.ty, Type::Reference(it) if it.kind == RefKind::Interface);
+        let are_instances = of_interface(a) && of_interface(b);
         let at = |it: &Value<'a>| match &it.cells[0] {
-            Cell::Reference(to) => Ok(to.as_ref().map(|it| it.at)),
+            Cell::Reference(to) => Ok(to.as_ref().map(|it| (it.at, it.ty.class().filter(|_| are_instances)))),
             _ => unknown("a reference beside what is none"),
         };
         match op {

@@ -5,7 +5,7 @@ use crate::compare::{Scan, Verdict, difference};
 use crate::leaf::Read;
 use crate::recorded::{Event, recorded};
 use crate::scan::Table;
-use staunch_frontend::{Sources, ast, parse_file};
+use staunch_frontend::{Dialect, Sources, ast, parse_file};
 use staunch_runtime::{Family, FaultKind};
 use staunch_witness::{Input, Machine, Stop};
 use std::collections::BTreeMap;
@@ -54,6 +54,11 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     let table = Table::parse(&case.pinned(Pin::Scan))?;
     if settings.options.ctu_stop_at_pv {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
+    }
+    // The witness knows families, and SCL is of none.
+    let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
+    if settings.options.dialect == Dialect::Siemens && has("**") {
+        return Ok(Verdict::Rejected("a power in SCL".to_owned()));
     }
     let family = settings.options.dialect.family();
     // The witness has no prescan of Logix: programs with its counters start without one.
