@@ -213,8 +213,10 @@ impl Writer {
         of_function: bool,
     ) -> Option<String> {
         let depth = depth.saturating_sub(1);
-        let mut order: Vec<&Parameter> = parameters.iter().filter(|it| it.section != Section::Output).collect();
-        order.extend(parameters.iter().filter(|it| it.section == Section::Output));
+        let mut order: Vec<&Parameter> = parameters.iter().collect();
+        if self.codesys {
+            order.sort_by_key(|it| it.section == Section::Output);
+        }
         let mut named: Vec<&Parameter> = order.split_off(positional);
         self.shuffle(&mut named);
         let mut arguments = Vec::new();

@@ -59,6 +59,10 @@ struct Writer {
     counting: Vec<(String, bool)>,
     loops: usize,
     whiles: usize,
+    /// Labels that come after the statement, in its list or one around it.
+    labels: Vec<String>,
+    /// Nothing may leave the `__TRY` around.
+    stays: bool,
     /// How the names of the block's own counters of WHILE begin.
     loop_prefix: String,
     /// Whether the block that is being written has a base.
@@ -93,6 +97,8 @@ impl Writer {
             counting: Vec::new(),
             loops: 0,
             whiles: 0,
+            labels: Vec::new(),
+            stays: false,
             loop_prefix: String::new(),
             is_heir: false,
             edges: false,

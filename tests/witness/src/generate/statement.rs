@@ -21,6 +21,9 @@ impl Writer {
     }
 
     fn statement(&mut self, depth: usize) {
+        if self.codesys && depth > 0 && self.random.once_in(12) {
+            return if self.random.once_in(2) { self.attempted(depth) } else { self.labelled(depth) };
+        }
         match self.random.below(if depth == 0 { 11 } else { 18 }) {
             0..=4 => self.assignment(),
             5..=7 => match self.block_call() {
@@ -98,13 +101,61 @@ impl Writer {
 
     /// The end of a branch that leaves.
     fn jump(&mut self) {
+        if self.stays {
+            return;
+        }
         let jump = match self.random.below(6) {
-            0 if self.loops > 0 => "EXIT;",
-            1 if self.loops > 0 => "CONTINUE;",
-            2 if self.random.once_in(3) => "RETURN;",
+            0 if self.loops > 0 => "EXIT;".to_owned(),
+            1 if self.loops > 0 => "CONTINUE;".to_owned(),
+            2 if self.random.once_in(3) => "RETURN;".to_owned(),
+            3 if !self.labels.is_empty() => format!("JMP {};", self.random.one_of(&self.labels.clone())),
             _ => return,
         };
-        self.inside(|this| this.line(jump));
+        self.inside(|this| this.line(&jump));
+    }
+
+    /// Statements whose faults are handled. What leaves them may do so only where nothing comes last.
+    fn attempted(&mut self, depth: usize) {
+        let finally = self.random.once_in(3);
+        let stays = self.stays;
+        self.stays |= finally;
+        self.line("__TRY");
+        self.some(depth - 1);
+        self.jump();
+        self.line("__CATCH");
+        self.some(depth - 1);
+        self.jump();
+        self.stays = stays;
+        if finally {
+            self.line("__FINALLY");
+            self.some(depth - 1);
+        }
+        self.line("__ENDTRY");
+    }
+
+    /// Statements before a label that they jump to; or after one, with a jump back a few times.
+    fn labelled(&mut self, depth: usize) {
+        if self.whiles >= 4 {
+            return self.assignment();
+        }
+        let counter = format!("{}w{}", self.loop_prefix, self.whiles);
+        let label = format!("l{}", self.whiles);
+        self.whiles += 1;
+        let condition = self.expression(&Ty::Bool, 2);
+        if self.random.once_in(2) {
+            self.line(&format!("{counter} := 0;"));
+            self.line(&format!("{label}:"));
+            self.line(&format!("{counter} := {counter} + 1;"));
+            self.some(depth - 1);
+            self.line(&format!("IF {counter} < 4 AND {condition} THEN JMP {label}; END_IF;"));
+            return;
+        }
+        self.labels.push(label.clone());
+        self.some(depth - 1);
+        self.line(&format!("IF {condition} THEN JMP {label}; END_IF;"));
+        self.some(depth - 1);
+        self.labels.pop();
+        self.line(&format!("{label}:"));
     }
 
     fn case(&mut self, depth: usize) {
