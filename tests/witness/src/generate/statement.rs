@@ -121,6 +121,14 @@ impl Writer {
         self.stays |= finally;
         self.line("__TRY");
         self.some(depth - 1);
+        // Few statements fault by themselves.
+        if self.random.once_in(2)
+            && let Some(place) = self.place_of(&Ty::Number(2), true, 1)
+        {
+            let condition = self.expression(&Ty::Bool, 2);
+            self.inside(|this| this.line(&format!("{place} := 7 / BOOL_TO_INT({condition});")));
+            self.some(depth - 1);
+        }
         self.jump();
         self.line("__CATCH");
         self.some(depth - 1);
