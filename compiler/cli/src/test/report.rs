@@ -123,9 +123,10 @@ impl<'s> Report<'s> {
                 let help = help.or_else(|| self.help_on_missing(&text));
                 text.lines().map(str::to_owned).chain(source).chain(help).collect()
             }
-            Outcome::Failed { assertion, actual, expected, message } => {
+            Outcome::Failed { assertion, actual, expected, tolerance, message } => {
                 let Assertion { span, wants, compares_texts, .. } = assertions[assertion];
                 let shown = |it: String| if compares_texts { format!("'{it}'") } else { it };
+                let wants = wants.replace("{tolerance}", &tolerance.unwrap_or_default());
                 let wants = wants.replace("{}", &expected.map(shown).unwrap_or_default());
                 let found = actual.map(|it| format!(", found {}", shown(it))).unwrap_or_default();
                 let wants = format!("expected {wants}{found}");

@@ -69,7 +69,7 @@ VAR main : Main; END_VAR
 END_TEST
 ";
 
-const BACKENDS: [&str; 3] = ["native", "interpret", "rust"];
+pub const BACKENDS: [&str; 3] = ["native", "interpret", "rust"];
 
 #[test]
 fn tests_pass() {
@@ -174,7 +174,7 @@ TEST 'equal' ASSERT_EQ(3, 3); END_TEST
     for backend in BACKENDS {
         let out = folder.staunch(&format!("test tests.st --backend {backend}")).out(1);
         has(&out, &["expected to be 4, found 3\n", "expected to be greater than T#2s, found T#1s\n"]);
-        has(&out, &["expected to be near 1.5, found 1.0\n", "\n2 passed, 3 failed\n"]);
+        has(&out, &["expected to be within 0.1 of 1.5, found 1.0\n", "\n2 passed, 3 failed\n"]);
     }
 }
 

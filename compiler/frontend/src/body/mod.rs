@@ -7,6 +7,7 @@ mod case_text;
 mod exception;
 mod external;
 mod loops;
+mod near;
 mod statement;
 mod suite;
 

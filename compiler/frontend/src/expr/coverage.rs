@@ -115,9 +115,10 @@ impl<'s> Checker<'_, 's> {
         self.count_point(Sort::Statement, CoverageKind::Statement, span);
     }
 
-    /// What a mock adds to a body is where the POU's name is.
+    /// What a mock adds to a body is where the POU's name is, or where a test names what runs in its place.
     fn is_made_up(&self, span: Span) -> bool {
-        self.slot.is_some_and(|slot| self.decl.pous[slot].ast.name.span == span)
+        let is_name = self.slot.is_some_and(|slot| self.decl.pous[slot].ast.name.span == span);
+        is_name || self.decl.tests.exchanged.places.contains(&span)
     }
 
     /// An arm of a CASE, by its first label, or that no label holds the value, by the CASE.

@@ -25,6 +25,7 @@ pub(crate) fn tests(declarations: &mut Declarations<'_>, mut groups: Groups) -> 
         let own = declarations.tests.assertions.get(&slot).into_iter().flatten().map(|it| Assertion {
             actual: in_test(&it.actual),
             expected: in_test(&it.expected),
+            tolerance: in_test(&it.tolerance),
             message: in_test(&it.message),
             ..it.clone()
         });
