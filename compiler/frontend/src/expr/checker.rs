@@ -5,6 +5,7 @@ use super::late_target::LateTarget;
 use super::uses::Uses;
 use crate::testing::suite::WANTED;
 use crate::types::counter::Counter;
+use crate::types::coverage::Role;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::Signature;
@@ -49,6 +50,8 @@ pub(crate) struct Checker<'d, 's> {
     pub late: Option<LateTarget<'s>>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
+    /// Where the BOOLs are written that are counted, by what they have of that in the IR.
+    pub written: FxHashMap<(Location, Role), Span>,
     /// The structure whose members' declarations are followed: THIS means it there.
     pub this_structure: Option<Place>,
     /// What an assertion of a suite compares: the globals that keep it if the assertion fails.
@@ -96,6 +99,7 @@ impl<'d, 's> Checker<'d, 's> {
             may_not_run: false,
             late: None,
             is_covered: false,
+            written: FxHashMap::default(),
             this_structure: None,
             compared: Vec::new(),
         }
