@@ -18,7 +18,7 @@ use crate::{REJECTED, output};
 use coverage::{Counts, Coverage};
 use execute::Suite;
 use report::Report;
-use staunch_frontend::Test;
+use staunch_frontend::{Severity, Test};
 use std::collections::HashSet;
 use std::sync::Mutex;
 use table::Table;
@@ -110,7 +110,11 @@ impl Run<'_> {
         }
         let Self { session, suite, threads, report, coverage } = self;
         let compilation = session.without_tests(suite.counts.is_some())?;
-        let program = compilation.program.ok_or("the program without its tests is rejected")?;
+        let program = compilation.program.ok_or_else(|| {
+            let error = compilation.diagnostics.iter().find(|it| it.severity == Severity::Error);
+            let why = error.map_or_else(String::new, |it| format!(": {}", it.message));
+            format!("the program without its tests is rejected{why}")
+        })?;
         let counts = Mutex::new(Counts::of(&program, &compilation.coverage));
         let counted = suite.counts.map(|_| &counts);
         let work = |_: &mut (), piece: usize| Ok(table::run(session, suite, &program, &tables[piece], counted));

@@ -186,7 +186,8 @@ fn check_body<'s>(
         }
         None => checker.block_of(statements),
     };
-    if pou.is_stub && checker.decl.log.options.tests {
+    let options = checker.decl.log.options;
+    if pou.is_stub && (options.tests || options.is_tested) {
         body.append(&mut checker.not_there(pou.name.span));
     }
     checker.migration_lints(statements);
