@@ -89,8 +89,9 @@ pub(crate) fn expand<'s>(
     let is_test = |it: &Item<'_>| matches!(it, Item::Test(_));
     if !run {
         files.iter_mut().for_each(|it| it.items.retain(|it| !is_test(it)));
+        let of_fixtures = fixture::places(files);
         fixture::leave_out(files);
-        return Groups::default();
+        return Groups { of_fixtures, ..Groups::default() };
     }
     if files.iter().flat_map(|it| &it.items).any(mocks_an_instance) {
         let pous = files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {

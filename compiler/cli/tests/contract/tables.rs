@@ -187,7 +187,9 @@ END_PROGRAM
     folder.write("plant.st", "CONFIGURATION Plant\nPROGRAM run : Other;\nEND_CONFIGURATION\n");
     has(
         &folder.staunch("test . -A warnings").out(1),
-        &["x.csv:1:7: there is no variable `o`; did you mean `n`?\n          no CONFIGURATION runs what x.st has: `A`, `B`\n"],
+        &[
+            "x.csv:1:7: there is no variable `o`; did you mean `n`?\n          no CONFIGURATION runs what x.st has: `A`, `B`\n",
+        ],
     );
 }
 

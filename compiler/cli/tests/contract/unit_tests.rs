@@ -420,3 +420,36 @@ TEST 'heir' VAR own : Own; END_VAR MOCK own; own(speed := 3); ASSERT_EQ(own.n, 0
     let refused = folder.staunch("test t.st").err(1);
     has(&refused, &["no calls of the FUNCTION `F` are counted", "`MOCK_FUNCTION F RETURNS value;`"]);
 }
+
+/// What lies at an address is a member of its PROGRAM, in every dialect: a test sets and reads it.
+#[test]
+fn a_test_sees_what_lies_at_an_address() {
+    let source = "PROGRAM Main
+VAR i AT %IX0.0 : BOOL; o AT %QW2 : INT; b AT %IB4 : BYTE; n : INT; list : ARRAY[0..3] OF INT; END_VAR
+    IF i THEN n := n + 1; END_IF
+    o := n;
+    IF b.3 THEN list[2] := 7; END_IF
+END_PROGRAM
+TEST 'located'
+VAR m : Main; END_VAR
+    m.i := TRUE;
+    m.b := 8;
+    m();
+    ASSERT_EQ(m.o, 1);
+    ASSERT_EQ(%QW2, 1);
+    ASSERT_EQ(m.list[2], 7);
+    %IX0.0 := FALSE;
+    m();
+    ASSERT_EQ(m.n, 1);
+    ASSERT_FALSE(m.i);
+END_TEST
+";
+    for dialect in ["iec", "codesys"] {
+        let text = source.replace("m.b := 8", if dialect == "iec" { "m.b := BYTE#8" } else { "m.b := 8" });
+        let folder = Folder::with(&format!("tests_located_{dialect}"), &[("m.st", &text)]);
+        for backend in BACKENDS {
+            let ran = folder.staunch(&format!("test . --dialect {dialect} --backend {backend}"));
+            assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{dialect} {backend} {}", ran.out);
+        }
+    }
+}

@@ -122,6 +122,11 @@ impl<'d, 's> Checker<'d, 's> {
         self.scope.get(WANTED).is_some()
     }
 
+    /// Whether the body is one of a unit test, whatever its kind: it stands in for what is around a program.
+    pub(crate) fn is_of_tests(&self) -> bool {
+        self.is_test() || self.is_suite() || self.slot.is_some_and(|it| self.decl.is_of_fixture(it))
+    }
+
     /// Whether the body is that of a run in a CONFIGURATION.
     pub(crate) fn is_run(&self) -> bool {
         self.slot.is_some_and(|it| self.decl.pous[it].run.is_some())

@@ -60,11 +60,15 @@ impl<'s> Declarations<'s> {
     /// Whether the body of a POU is counted: tests are not, nor is the library.
     pub(crate) fn is_covered(&self, slot: usize) -> bool {
         let pou = &self.pous[slot];
-        let fixtures = &self.tests.fixtures;
-        let is_fixture = |slot: usize| fixtures.contains(&self.pous[slot].ast.name.span);
-        let is_tests = pou.ast.kind == PouKind::Test || is_fixture(slot) || pou.owner.is_some_and(is_fixture);
+        let is_tests = pou.ast.kind == PouKind::Test || self.is_of_fixture(slot);
         let is_own = |files: u16| pou.ast.name.span.file < files && pou.run.is_none() && !is_tests;
         self.coverage.as_ref().is_some_and(|it| is_own(it.files))
+    }
+
+    /// Whether a POU is one of AxUnit's fixtures, or a METHOD of one.
+    pub(crate) fn is_of_fixture(&self, slot: usize) -> bool {
+        let is_fixture = |slot: usize| self.tests.fixtures.contains(&self.pous[slot].ast.name.span);
+        is_fixture(slot) || self.pous[slot].owner.is_some_and(is_fixture)
     }
 
     /// An array of so many counters.
