@@ -190,3 +190,47 @@ END_FUNCTION_BLOCK
         has(&ran.out, &["ok      T.literals", "1 passed, 2 failed"]);
     }
 }
+
+/// By its address a suite writes what others may only read.
+#[test]
+fn suites_write_what_is_protected() {
+    let source = "FUNCTION_BLOCK Part
+VAR x : INT; END_VAR
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Machine
+VAR_INPUT go : BOOL; name : STRING; END_VAR
+VAR_OUTPUT done : BOOL; END_VAR
+VAR count : INT := 3; part : Part; sensor AT %I* : INT; wait : TIME; since : DT; share : LREAL; END_VAR
+    count := count + 1;
+    done := count > 10 AND go;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK MachineTest EXTENDS TcUnit.FB_TestSuite
+VAR machine : Machine; END_VAR
+    TEST('writes');
+    WRITE_PROTECTED_INT(Ptr := ADR(machine.count), Value := 20);
+    WRITE_PROTECTED_INT(ADR(machine.part.x), 21);
+    WRITE_PROTECTED_INT(ADR(machine.sensor), 22);
+    TcUnit.WRITE_PROTECTED_BOOL(ADR(machine.go), TRUE);
+    WRITE_PROTECTED_STRING(ADR(machine.name), 'abc');
+    WRITE_PROTECTED_TIME(ADR(machine.wait), T#3S);
+    WRITE_PROTECTED_DATE_AND_TIME(ADR(machine.since), DT#2024-01-01-00:00:00);
+    write_protected_lreal(ADR(machine.share), 0.5);
+    TCUNIT_ADSLOGSTR(ADSLOG_MSGTYPE_HINT, 'machine %s', 'A');
+    machine();
+    AssertTrue(machine.done, 'done');
+    AssertEquals_INT(21, machine.count, 'count');
+    AssertEquals_INT(21, machine.part.x, 'part');
+    AssertEquals_INT(22, machine.sensor, 'sensor');
+    AssertEquals_STRING('abc', machine.name, 'name');
+    AssertEquals_TIME(T#3S, machine.wait, 'wait');
+    AssertEquals_DATE_AND_TIME(DT#2024-01-01-00:00:00, machine.since, 'since');
+    AssertEquals_LREAL(0.5, machine.share, 0.0, 'share');
+    TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tcunit_protected", &[("m.st", source)]);
+    for backend in ["native", "interpret", "rust"] {
+        let ran = folder.staunch(&format!("test . --dialect codesys --backend {backend}"));
+        has(&ran.out(0), &["ok      MachineTest.writes\n", "1 passed, 0 failed"]);
+    }
+}
