@@ -234,3 +234,44 @@ END_FUNCTION_BLOCK
         has(&ran.out(0), &["ok      MachineTest.writes\n", "1 passed, 0 failed"]);
     }
 }
+
+/// Member by member: what is after the end of a text, and between members, does not count.
+#[test]
+fn structures_and_arrays_are_compared() {
+    let source = "TYPE
+    Part : STRUCT b : BYTE; x : LREAL; s : STRING(10); END_STRUCT
+    Whole : STRUCT flag : BOOL; code : INT; list : ARRAY[1..3, 0..1] OF Part; END_STRUCT
+END_TYPE
+FUNCTION Made : Whole
+VAR_INPUT code : INT; END_VAR
+    Made.code := code;
+END_FUNCTION
+FUNCTION_BLOCK Wholes EXTENDS TcUnit.FB_TestSuite
+VAR all : ARRAY[0..3] OF Whole; i : INT; c, d, none : Whole; big, big2 : ARRAY[0..20000] OF INT; END_VAR
+    TEST('same');
+    i := 2;
+    all[2].list[2, 1].s := 'abc$00xyz';
+    all[2].list[2, 1].s := 'abc';
+    c.list[2, 1].s := 'abc';
+    all[2].list[3, 0].x := 0.5;
+    c.list[3, 0].x := 0.5;
+    AssertEquals(Expected := c, Actual := all[i], Message := 'elements');
+    AssertEquals(big, big2, 'arrays');
+    AssertEquals(Made(7), Made(7), 'results');
+    TEST_FINISHED();
+    TEST('a member'); d := none; d.code := 5; AssertEquals(none, d, ''); TEST_FINISHED();
+    TEST('an element'); d := none; d.list[3, 1].b := 1; AssertEquals(none, d, ''); TEST_FINISHED();
+    TEST('a text'); d := none; d.list[1, 1].s := 'a'; AssertEquals(none, d, ''); TEST_FINISHED();
+    TEST('a result'); AssertEquals(Made(8), none, ''); TEST_FINISHED();
+    TEST('an array'); big2[20000] := 1; AssertEquals(big, big2, ''); TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tcunit_wholes", &[("w.st", source)]);
+    for backend in ["native", "interpret", "rust"] {
+        let out = folder.staunch(&format!("test . --dialect codesys --backend {backend}")).out(1);
+        has(&out, &["ok      Wholes.same\n", "1 passed, 5 failed"]);
+        has(&out, &["AssertEquals(none, d, '')\n          expected to be the same, code differs\n"]);
+        has(&out, &["expected to be the same, list[…][…].b differs\n"]);
+        has(&out, &["expected to be the same, list[…][…].s differs\n", "expected to be the same, […] differs\n"]);
+    }
+}

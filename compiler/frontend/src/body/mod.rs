@@ -10,6 +10,7 @@ mod loops;
 mod near;
 mod statement;
 mod suite;
+mod whole;
 
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;

@@ -184,6 +184,9 @@ impl<'s> Checker<'_, 's> {
             }
             return self.other_classes([expected, actual], span);
         }
+        if Self::is_made_of_others(&sides.a) || Self::is_made_of_others(&sides.b) {
+            return self.equal_wholes([sides.a, sides.b], both, span);
+        }
         let claim = self.comparison_of(sides, both, "to be {}")?;
         let (actual, expected) = (claim.expected, claim.actual);
         Some(Claim { actual, expected, ..claim })
