@@ -124,6 +124,13 @@ fn add_others(test: &Test, suite: &Suite, wants: &dyn Fn(&str) -> bool, ran: &Ra
             cases.push(case(test, suite, title.clone(), outcome));
         }
     }
+    for (title, span) in suite.finished.iter().filter(|it| ran.fault.is_none() && wants(&in_full(test, &it.0))) {
+        let title = in_full(test, title);
+        if !cases.iter().any(|it| it.title == title) {
+            let why = "TEST_FINISHED_NAMED names it, and the suite never begins it";
+            cases.push(Case { title, span: *span, outcome: Outcome::Skipped(why.to_owned()) });
+        }
+    }
     if let Some(fault) = &ran.fault
         && !cases.iter().any(|it| matches!(it.outcome, Outcome::Faulted(_)))
     {
