@@ -100,6 +100,11 @@ impl Session {
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
         }
+        if let Some(table) = named.iter().find(|it| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("csv"))) {
+            let source = table.with_extension("st");
+            let text = format!("{} is a table, no source: name the source that it is beside", table.display());
+            return Err(if source.is_file() { format!("{text}, {}", source.display()) } else { text });
+        }
         if let Some(cycle) = &project.cycle {
             let place = || project.place("cycle", None);
             staunch_host::parse_duration(cycle).map_err(|it| format!("{}: `cycle`: {it}", place()))?;

@@ -275,3 +275,21 @@ END_FUNCTION_BLOCK
         has(&out, &["expected to be the same, list[…][…].s differs\n", "expected to be the same, […] differs\n"]);
     }
 }
+
+/// TcUnit passes over a name that no test has.
+#[test]
+fn a_test_that_is_finished_by_another_name_is_told() {
+    let source = "FUNCTION_BLOCK Starts EXTENDS TcUnit.FB_TestSuite
+    TEST('starts'); TEST_FINISHED_NAMED('strats');
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Ends EXTENDS TcUnit.FB_TestSuite
+    TEST('  one '); TEST_FINISHED_NAMED('typo'); TEST_FINISHED_NAMED('one');
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tcunit_finished", &[("s.st", source)]);
+    let out = folder.staunch("test . --dialect codesys --scans 3").out(1);
+    has(&out, &["FAILED  Starts.starts\n", "ok      Ends.one\n", "1 passed, 1 failed, 2 skipped\n"]);
+    for title in ["Starts.strats", "Ends.typo"] {
+        has(&out, &[&format!("skipped {title}: TEST_FINISHED_NAMED names it, and the suite never begins it\n")]);
+    }
+}

@@ -453,3 +453,35 @@ END_TEST
         }
     }
 }
+
+#[test]
+fn what_there_is_to_run_is_said() {
+    let suites = "{dialect 'codesys'}
+FUNCTION_BLOCK Good EXTENDS TcUnit.FB_TestSuite
+    TEST('adds'); AssertEquals_INT(2, 2, ''); TEST_FINISHED();
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Bad EXTENDS TcUnit.FB_TestSuite
+VAR z : INT; s : STRING := 'divides'; END_VAR
+    TEST(s); z := 5 / z; TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tests_to_run", &[("s.st", suites)]);
+    assert_eq!(folder.staunch("test s.st --filter adds").out(0), "s.st\n  ok      Good.adds\n\n1 passed, 0 failed\n");
+    has(&folder.staunch("test s.st --filter divides").out(1), &["FAILED  Bad.divides\n", "0 passed, 1 failed"]);
+    has(&folder.staunch("test s.st --filter none").err(2), &["no test has `none` in its title; there are 2 suites\n"]);
+    let empty = "{dialect 'codesys'}\nFUNCTION_BLOCK Empty EXTENDS TcUnit.FB_TestSuite\n;\nEND_FUNCTION_BLOCK\n";
+    folder.write("e.st", empty);
+    has(&folder.staunch("test e.st").err(2), &["no test is there to run"]);
+    folder.write("f.st", "{TestFixture}\nCLASS Fixture\nEND_CLASS\n");
+    has(&folder.staunch("test f.st").err(2), &["no test is there to run"]);
+    folder.write("one.st", "TEST \"a $\"quoted$\" one, $$5\" ASSERT_TRUE(FALSE); END_TEST\n");
+    has(&folder.staunch("test one.st --filter none").err(2), &["there is 1 test\n"]);
+    let ran = folder.staunch("test one.st --mutants");
+    has(&ran.out, &["FAILED  a \"quoted\" one, $5\n"]);
+    has(&ran.err(1), &["the mutants: they are tried where all tests pass"]);
+    folder.write("one.csv", "n,|,n\n");
+    has(
+        &folder.staunch("test one.csv").err(2),
+        &["one.csv is a table, no source: name the source that it is beside, one.st"],
+    );
+}
