@@ -58,14 +58,14 @@ impl Session {
 
     /// Changed sources, as tests or as what `run` would run.
     pub fn compile(&self, sources: &Sources, tests: bool) -> Result<Compilation, String> {
-        let options = Options { tests, ..options(&self.common, &self.project)? };
+        let options = Options { tests, is_tested: true, ..options(&self.common, &self.project)? };
         Ok(staunch_frontend::compile(sources, &options))
     }
 
     /// The program that is not tests alone: what `run` would run. There is nothing more to say of it.
     pub fn without_tests(&self, is_covered: bool) -> Result<Compilation, String> {
         let coverage = covered(&self.sources, is_covered);
-        let options = Options { coverage, ..options(&self.common, &self.project)? };
+        let options = Options { coverage, is_tested: true, ..options(&self.common, &self.project)? };
         Ok(staunch_frontend::compile(&self.sources, &options))
     }
 
@@ -99,6 +99,11 @@ impl Session {
         let named = if files.files.is_empty() { seen(&project, "files", &project.files)? } else { files.files.clone() };
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
+        }
+        if let Some(table) = named.iter().find(|it| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("csv"))) {
+            let source = table.with_extension("st");
+            let text = format!("{} is a table, no source: name the source that it is beside", table.display());
+            return Err(if source.is_file() { format!("{text}, {}", source.display()) } else { text });
         }
         if let Some(cycle) = &project.cycle {
             let place = || project.place("cycle", None);
@@ -298,7 +303,7 @@ impl Session {
 
     /// Whether a CONFIGURATION says which instances run: then they bear names of their own, or
     /// the source has a TASK.
-    fn configured(&self, program: &Program) -> bool {
+    pub fn configured(&self, program: &Program) -> bool {
         let plain = |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.class(it.program).name;
         !program.instances.iter().all(plain)
     }
@@ -359,6 +364,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         moved_from: None,
         tests: false,
         is_run: true,
+        is_tested: false,
         coverage: None,
     })
 }

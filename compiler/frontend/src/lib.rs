@@ -161,7 +161,7 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     let mut declarations = declare::declare(log, whole, &files, &runs, &bodies);
     declarations.coverage = options.coverage.map(|files| Coverage { files, ..Coverage::default() });
     declarations.tests.exchanged.clone_from(&groups.exchanged);
-    declarations.tests.fixtures = groups.fixtures.keys().copied().collect();
+    declarations.tests.fixtures.clone_from(&groups.of_fixtures);
     declarations.tests.callers = testing::fixture::callers(&files);
     let checked = body::check(&mut declarations, &mut bodies, keep);
     let shared = declarations.shared_programs(&files);

@@ -97,9 +97,9 @@ fn is_stub(pou: &Pou<'_>) -> bool {
 
 impl Stubs {
     /// Reports what is called of the library and has no body, each once; `routines` are those of the POUs' slots. In a
-    /// unit test it may have a mock in its place, and else faults.
+    /// unit test it may have a mock in its place, and else faults, as it does beside a table.
     pub fn report_called(&self, declarations: &mut Declarations<'_>, routines: &[Option<&Routine>]) {
-        if self.names.is_empty() || declarations.log.options.tests {
+        if self.names.is_empty() || declarations.log.options.tests || declarations.log.options.is_tested {
             return;
         }
         let sources = declarations.log.sources;
@@ -143,7 +143,7 @@ impl Declarations<'_> {
     /// Where the program is to run as it is: reports what the PROGRAMs call that is implemented outside. A unit test may
     /// have a mock in its place, and else faults.
     pub(crate) fn report_not_there(&mut self, routines: &[Option<&Routine>]) {
-        if !self.log.options.is_run || self.log.options.tests {
+        if !self.log.options.is_run || self.log.options.tests || self.log.options.is_tested {
             return;
         }
         let is_program = |slot: &usize| self.pous[*slot].ast.kind == PouKind::Program;

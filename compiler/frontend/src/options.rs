@@ -18,6 +18,8 @@ pub struct Options {
     pub tests: bool,
     /// It runs as it is: what is declared `{external}` is not there, and a call of it faults.
     pub is_run: bool,
+    /// It runs in a test: what has no body here faults, and is not reported where it is called.
+    pub is_tested: bool,
     /// Counts what is executed of the first so many sources.
     pub coverage: Option<u16>,
 }

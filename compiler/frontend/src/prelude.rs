@@ -60,6 +60,14 @@ const SYSTEM: &str = "System";
 /// AxUnit's mocks, which are there where they are named: `AxUnit.Mocking`, or `Mocking` after `USING AxUnit`.
 const MOCKING: &str = "AxUnit.Mocking";
 
+/// TcUnit's functions that write to what others may only read, where the library's name is before them.
+const WRITE_PROTECTED: &str = "TcUnit.WRITE_PROTECTED";
+
+fn is_write_protected(name: &str) -> bool {
+    const BEGINNING: &str = "WRITE_PROTECTED_";
+    name.get(..BEGINNING.len()).is_some_and(|it| it.eq_ignore_ascii_case(BEGINNING))
+}
+
 /// The namespace of what is handed on for an input of ANY, and its members.
 const ANY: &str = "__SYSTEM";
 /// The list of global variables of TwinCAT's libraries.
@@ -300,6 +308,29 @@ pub(crate) const UNITS: &[Unit] = units! {
     Space    "__SYSTEM"         "system_any"       [Codesys];
     // Without its namespace, as TwinCAT takes it.
     Type     "FB_TestSuite"     (LINE_END) "TcUnit";
+    Space    "TcUnit.WRITE_PROTECTED" (tcunit::WRITE_PROTECTED);
+    Function "TCUNIT_ADSLOGSTR" "tcunit_adslogstr" [Codesys] "ADSLOGSTR";
+    Function "WRITE_PROTECTED_BOOL" (tcunit::write_protected!("BOOL")) [Codesys];
+    Function "WRITE_PROTECTED_BYTE" (tcunit::write_protected!("BYTE")) [Codesys];
+    Function "WRITE_PROTECTED_WORD" (tcunit::write_protected!("WORD")) [Codesys];
+    Function "WRITE_PROTECTED_DWORD" (tcunit::write_protected!("DWORD")) [Codesys];
+    Function "WRITE_PROTECTED_LWORD" (tcunit::write_protected!("LWORD")) [Codesys];
+    Function "WRITE_PROTECTED_SINT" (tcunit::write_protected!("SINT")) [Codesys];
+    Function "WRITE_PROTECTED_INT" (tcunit::write_protected!("INT")) [Codesys];
+    Function "WRITE_PROTECTED_DINT" (tcunit::write_protected!("DINT")) [Codesys];
+    Function "WRITE_PROTECTED_LINT" (tcunit::write_protected!("LINT")) [Codesys];
+    Function "WRITE_PROTECTED_USINT" (tcunit::write_protected!("USINT")) [Codesys];
+    Function "WRITE_PROTECTED_UINT" (tcunit::write_protected!("UINT")) [Codesys];
+    Function "WRITE_PROTECTED_UDINT" (tcunit::write_protected!("UDINT")) [Codesys];
+    Function "WRITE_PROTECTED_ULINT" (tcunit::write_protected!("ULINT")) [Codesys];
+    Function "WRITE_PROTECTED_REAL" (tcunit::write_protected!("REAL")) [Codesys];
+    Function "WRITE_PROTECTED_LREAL" (tcunit::write_protected!("LREAL")) [Codesys];
+    Function "WRITE_PROTECTED_TIME" (tcunit::write_protected!("TIME")) [Codesys];
+    Function "WRITE_PROTECTED_DATE" (tcunit::write_protected!("DATE")) [Codesys];
+    Function "WRITE_PROTECTED_TIME_OF_DAY" (tcunit::write_protected!("TIME_OF_DAY")) [Codesys];
+    Function "WRITE_PROTECTED_DATE_AND_TIME" (tcunit::write_protected!("DATE_AND_TIME")) [Codesys];
+    Function "WRITE_PROTECTED_STRING" (tcunit::write_protected!("STRING")) [Codesys];
+    Function "WRITE_PROTECTED_WSTRING" (tcunit::write_protected!("WSTRING")) [Codesys];
 };
 
 static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| {
@@ -443,7 +474,9 @@ impl Uses {
                 }));
             }
             let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
+            let writes = word(at).eq_ignore_ascii_case("TcUnit") && is_write_protected(word(at + 2));
             let space = is_space.then(|| format!("{SYSTEM}.{}", word(at + 2)));
+            let space = space.or_else(|| writes.then(|| WRITE_PROTECTED.to_owned()));
             let names_mocking = word(at).eq_ignore_ascii_case("Mocking") && before != Some(Kind::Dot)
                 || word(at).eq_ignore_ascii_case("AxUnit") && word(at + 2).eq_ignore_ascii_case("Mocking");
             let name = if names_mocking { MOCKING } else { space.as_deref().unwrap_or(word(at)) };

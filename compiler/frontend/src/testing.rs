@@ -52,21 +52,31 @@ pub struct Test {
 pub(crate) struct Groups {
     pub suites: FxHashMap<Span, Suite>,
     pub fixtures: FxHashMap<Span, Fixture>,
+    /// Where the names of fixtures are, and of the ABSTRACT CLASSes that are written for them.
+    pub of_fixtures: FxHashSet<Span>,
     /// What AxUnit's mocks exchange.
-    pub exchanged: exchange::Numbers,
+    pub exchanged: exchange::Exchanged,
 }
 
 /// An assertion, and the variables that hold what it compared when it failed.
 #[derive(Clone, Debug)]
 pub struct Assertion {
     pub span: Span,
-    /// What was expected, with `{}` where the value is: `to be greater than {}`.
+    /// What was expected, with `{}` where the value is, `to be greater than {}`, and `{tolerance}` where that is.
     pub wants: &'static str,
     /// Both values are texts.
     pub compares_texts: bool,
     pub actual: Option<String>,
     pub expected: Option<String>,
+    pub tolerance: Option<String>,
     pub message: Option<String>,
+}
+
+impl Assertion {
+    /// The variables that are looked at where it has failed.
+    pub fn kept(&self) -> impl Iterator<Item = &String> {
+        [&self.actual, &self.expected, &self.tolerance, &self.message].into_iter().flatten()
+    }
 }
 
 /// The tests of the files become POUs, or, where they do not run, are left out.
@@ -79,8 +89,9 @@ pub(crate) fn expand<'s>(
     let is_test = |it: &Item<'_>| matches!(it, Item::Test(_));
     if !run {
         files.iter_mut().for_each(|it| it.items.retain(|it| !is_test(it)));
+        let of_fixtures = fixture::places(files);
         fixture::leave_out(files);
-        return Groups::default();
+        return Groups { of_fixtures, ..Groups::default() };
     }
     if files.iter().flat_map(|it| &it.items).any(mocks_an_instance) {
         let pous = files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
@@ -101,8 +112,9 @@ pub(crate) fn expand<'s>(
         file.items = items;
         file.items.extend(whole_tests(tests).map(Item::Pou));
     }
-    let fixtures = fixture::expand(files, sources, !exchanged.is_empty(), diagnostics);
-    Groups { fixtures, suites: suite::expand(files), exchanged }
+    let of_fixtures = fixture::places(files);
+    let fixtures = fixture::expand(files, sources, !exchanged.numbers.is_empty(), diagnostics);
+    Groups { fixtures, suites: suite::expand(files), of_fixtures, exchanged }
 }
 
 /// Whether the sources hold unit tests.

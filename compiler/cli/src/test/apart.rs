@@ -4,7 +4,7 @@ use super::fixture::Step;
 use super::outcome::{Outcome, failed};
 use super::suite::{self, Pace, Ran, See};
 use crate::scratch;
-use staunch_frontend::Test;
+use staunch_frontend::{Assertion, Test};
 use staunch_host::csv_cells;
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -41,7 +41,7 @@ fn trace(mut command: Command, test: &Test, scans: u64, turns: u64, names: &[Str
 
 pub fn test(executable: &Path, test: &Test, turns: u64, cycle: i64) -> Result<Outcome, String> {
     let assertions = test.assertions.iter();
-    let kept = assertions.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten();
+    let kept = assertions.flat_map(Assertion::kept);
     let names: Vec<_> = [test.failed.clone()].into_iter().chain(kept.cloned()).collect();
     let mut command = Command::new(executable);
     command.arg(format!("--cycle={cycle}ns"));
@@ -76,7 +76,7 @@ pub fn fixture(executable: &Path, test: &Test, turns: u64, pace: Pace, steps: &[
     let first = traced(std::slice::from_ref(seen))?;
     let failures = first.rows.iter().filter_map(|it| it.last()?.parse::<usize>().ok()?.checked_sub(1));
     let kept = failures.filter_map(|it| test.assertions.get(it));
-    let kept = kept.flat_map(|it| [&it.actual, &it.expected, &it.message]).flatten().cloned();
+    let kept = kept.flat_map(Assertion::kept).cloned();
     let mut names: Vec<_> = kept.chain([seen.clone()]).collect();
     names.sort_unstable();
     names.dedup();

@@ -96,9 +96,12 @@ impl Executor<'_> {
     /// The results of a test, or of those tests of a suite that are wanted.
     pub fn run(&mut self, instance: usize, test: &Test, wants: &dyn Fn(&str) -> bool) -> Result<Vec<Case>, String> {
         if let Some(it) = &test.fixture {
-            let cases = fixture::cases(test, it, wants, &mut |steps| self.fixture(instance, test, steps))?;
-            self.count()?;
-            return Ok(cases);
+            return fixture::cases(test, it, wants, &mut |steps| {
+                let outcomes = self.fixture(instance, test, steps)?;
+                // After a fault the others run on a fresh state.
+                self.count()?;
+                Ok(outcomes)
+            });
         }
         let Some(suite) = &test.suite else {
             let outcome = self.outcome(instance, test)?;

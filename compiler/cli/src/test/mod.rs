@@ -18,7 +18,7 @@ use crate::{REJECTED, output};
 use coverage::{Counts, Coverage};
 use execute::Suite;
 use report::Report;
-use staunch_frontend::Test;
+use staunch_frontend::{Severity, Test};
 use std::collections::HashSet;
 use std::sync::Mutex;
 use table::Table;
@@ -30,15 +30,11 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
         return Err("the sources hold no TEST, and no table is beside them".to_owned());
     }
     let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| args.wants_of(it.1)).collect();
-    let (groups, single): (Vec<_>, Vec<_>) =
-        session.tests.iter().partition(|it| it.suite.is_some() || it.fixture.is_some());
-    let all = single.len() + tables.len();
-    let groups = if groups.is_empty() { String::new() } else { format!(" and {} suites", groups.len()) };
-    let tables: Vec<Table> = tables.into_iter().filter(|it| args.wants(&it.title)).collect();
-    if tests.is_empty() && tables.is_empty() {
-        let wanted = args.filter.as_deref().unwrap_or_default();
-        return Err(format!("no test has `{wanted}` in its title; there are {all} tests{groups}"));
+    let wanted: Vec<Table> = tables.iter().filter(|it| args.wants(&it.title)).cloned().collect();
+    if tests.is_empty() && wanted.is_empty() {
+        return Err(none_to_run(session, args, &tables));
     }
+    let tables = wanted;
     let is_covered = !args.coverage.is_empty();
     if is_covered && args.backend == Backend::Rust {
         return Err("coverage is measured with --backend native or interpret".to_owned());
@@ -55,6 +51,9 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     };
     run.tests(&tests, &|it| args.wants(it))?;
     run.tables(&tables)?;
+    if run.report.results.is_empty() {
+        return Err(none_to_run(session, args, &tables));
+    }
     if is_covered {
         run.coverage.add(&session.coverage, &counts);
         let text = run.coverage.write(session, &args.coverage)?;
@@ -65,12 +64,33 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
         output::write(path, junit::text(&run.report).as_bytes())?;
     }
     if run.report.failed() > 0 {
+        if args.mutants.is_some() {
+            session.say("Skipped", "the mutants: they are tried where all tests pass");
+        }
         return Ok(REJECTED);
     }
     if args.mutants.is_some() && mutants::run(session, args, &tables, run.threads)? > 0 {
         return Ok(REJECTED);
     }
     Ok(0)
+}
+
+/// Why no test runs, though the sources hold some, or what may hold some.
+fn none_to_run(session: &Session, args: &args::Test, tables: &[Table]) -> String {
+    let Some(wanted) = &args.filter else {
+        return "no test is there to run: the suites and fixtures of the sources have none".to_owned();
+    };
+    let (groups, single): (Vec<_>, Vec<_>) =
+        session.tests.iter().partition(|it| it.suite.is_some() || it.fixture.is_some());
+    let count = |number: usize, what: &str| match number {
+        0 => None,
+        1 => Some(format!("1 {what}")),
+        _ => Some(format!("{number} {what}s")),
+    };
+    let all = single.len() + tables.len();
+    let parts: Vec<_> = [count(all, "test"), count(groups.len(), "suite")].into_iter().flatten().collect();
+    let is = if all + groups.len() == 1 { "is" } else { "are" };
+    format!("no test has `{wanted}` in its title; there {is} {}", parts.join(" and "))
 }
 
 struct Run<'s> {
@@ -110,7 +130,11 @@ impl Run<'_> {
         }
         let Self { session, suite, threads, report, coverage } = self;
         let compilation = session.without_tests(suite.counts.is_some())?;
-        let program = compilation.program.ok_or("the program without its tests is rejected")?;
+        let program = compilation.program.ok_or_else(|| {
+            let error = compilation.diagnostics.iter().find(|it| it.severity == Severity::Error);
+            let why = error.map_or_else(String::new, |it| format!(": {}", it.message));
+            format!("the program without its tests is rejected{why}")
+        })?;
         let counts = Mutex::new(Counts::of(&program, &compilation.coverage));
         let counted = suite.counts.map(|_| &counts);
         let work = |_: &mut (), piece: usize| Ok(table::run(session, suite, &program, &tables[piece], counted));

@@ -11,6 +11,7 @@ pub enum Outcome {
         assertion: usize,
         actual: Option<String>,
         expected: Option<String>,
+        tolerance: Option<String>,
         message: Option<String>,
     },
     /// What a table expected otherwise, a line each.
@@ -45,6 +46,7 @@ pub fn failed(test: &Test, values: &Values<'_>) -> Result<Outcome, String> {
     let Some(assertion) = number.checked_sub(1) else { return Ok(Outcome::Passed) };
     let made = test.assertions.get(assertion).ok_or_else(|| format!("assertion {number} is not known"))?;
     let shown = |name: &Option<String>| name.as_deref().map(values).transpose();
-    let (actual, expected, message) = (shown(&made.actual)?, shown(&made.expected)?, shown(&made.message)?);
-    Ok(Outcome::Failed { assertion, actual, expected, message })
+    let (actual, expected) = (shown(&made.actual)?, shown(&made.expected)?);
+    let (tolerance, message) = (shown(&made.tolerance)?, shown(&made.message)?);
+    Ok(Outcome::Failed { assertion, actual, expected, tolerance, message })
 }

@@ -44,11 +44,11 @@ impl<'s> Report<'s> {
     pub fn add_test(&mut self, test: &Test, case: Case) -> String {
         let source = self.session.sources.get(case.span.file);
         let (file, line) = (source.path.clone(), source.line_column(case.span.start).0);
-        self.add_outcome(case.title, file, line, &test.assertions, case.outcome)
+        self.add_outcome(case.title, file, line, Some(&test.assertions), case.outcome)
     }
 
     pub fn add_table(&mut self, table: &Table, outcome: Outcome) -> String {
-        self.add_outcome(table.title.clone(), table.file(), 1, &[], outcome)
+        self.add_outcome(table.title.clone(), table.file(), 1, None, outcome)
     }
 
     fn add_outcome(
@@ -56,7 +56,8 @@ impl<'s> Report<'s> {
         title: String,
         file: String,
         line: u32,
-        assertions: &[Assertion],
+        // A table has none.
+        assertions: Option<&[Assertion]>,
         outcome: Outcome,
     ) -> String {
         let faulted = matches!(outcome, Outcome::Faulted(_));
@@ -112,7 +113,7 @@ impl<'s> Report<'s> {
         }
     }
 
-    fn problem(&self, assertions: &[Assertion], outcome: Outcome) -> Vec<String> {
+    fn problem(&self, assertions: Option<&[Assertion]>, outcome: Outcome) -> Vec<String> {
         match outcome {
             Outcome::Passed | Outcome::Skipped(_) => Vec::new(),
             Outcome::Differs(lines) => lines,
@@ -120,12 +121,13 @@ impl<'s> Report<'s> {
                 let source = self.source_line(&text).map(str::to_owned);
                 let is_budget = text.ends_with(&FaultKind::LoopBudget.to_string());
                 let help = is_budget.then(|| "`--loop-budget N` gives a test more turns".to_owned());
-                let help = help.or_else(|| self.help_on_missing(&text));
+                let help = help.or_else(|| self.help_on_missing(&text, assertions.is_none()));
                 text.lines().map(str::to_owned).chain(source).chain(help).collect()
             }
-            Outcome::Failed { assertion, actual, expected, message } => {
-                let Assertion { span, wants, compares_texts, .. } = assertions[assertion];
+            Outcome::Failed { assertion, actual, expected, tolerance, message } => {
+                let Assertion { span, wants, compares_texts, .. } = assertions.unwrap_or_default()[assertion];
                 let shown = |it: String| if compares_texts { format!("'{it}'") } else { it };
+                let wants = wants.replace("{tolerance}", &tolerance.unwrap_or_default());
                 let wants = wants.replace("{}", &expected.map(shown).unwrap_or_default());
                 let found = actual.map(|it| format!(", found {}", shown(it))).unwrap_or_default();
                 let wants = format!("expected {wants}{found}");
@@ -137,8 +139,10 @@ impl<'s> Report<'s> {
     }
 
     /// What to do about a call of what has no body: the fault's place is its declaration.
-    fn help_on_missing(&self, text: &str) -> Option<String> {
-        let place = text.strip_suffix(&FaultKind::NotImplemented.to_string())?.strip_suffix(": ")?;
+    fn help_on_missing(&self, text: &str, is_table: bool) -> Option<String> {
+        // A run says the scan, too.
+        let fault = text.split(" (scan ").next()?.strip_suffix(&FaultKind::NotImplemented.to_string())?;
+        let place = fault.strip_suffix("fault: ").unwrap_or(fault).strip_suffix(": ")?;
         let column: usize = place.rsplit(':').next()?.parse().ok()?;
         let line = self.whole_line(text)?;
         let rest: String = line.chars().skip(column.checked_sub(1)?).collect();
@@ -146,8 +150,11 @@ impl<'s> Report<'s> {
         let is_function = line.to_ascii_uppercase().trim_start().starts_with("FUNCTION ");
         let mock =
             if is_function { format!("`MOCK_FUNCTION {name} RETURNS value;`") } else { "`MOCK instance;`".to_owned() };
-        (!name.is_empty())
-            .then(|| format!("the test calls `{name}`, which has no body here: replace it before that, by {mock}"))
+        let help = match is_table {
+            true => format!("the program calls `{name}`, which has no body here: a TEST may replace it, by {mock}"),
+            false => format!("the test calls `{name}`, which has no body here: replace it before that, by {mock}"),
+        };
+        (!name.is_empty()).then_some(help)
     }
 
     /// The line of the source that a fault's text begins with the place of.

@@ -124,7 +124,17 @@ fn add_others(test: &Test, suite: &Suite, wants: &dyn Fn(&str) -> bool, ran: &Ra
             cases.push(case(test, suite, title.clone(), outcome));
         }
     }
+    for (title, span) in suite.finished.iter().filter(|it| ran.fault.is_none() && wants(&in_full(test, &it.0))) {
+        let title = in_full(test, title);
+        if !cases.iter().any(|it| it.title == title) {
+            let why = "TEST_FINISHED_NAMED names it, and the suite never begins it";
+            cases.push(Case { title, span: *span, outcome: Outcome::Skipped(why.to_owned()) });
+        }
+    }
+    // A title that is computed is not known before the suite has begun the test.
+    let is_wanted = || wants(&test.title) || suite.titles.iter().any(|it| wants(&in_full(test, &it.0)));
     if let Some(fault) = &ran.fault
+        && is_wanted()
         && !cases.iter().any(|it| matches!(it.outcome, Outcome::Faulted(_)))
     {
         cases.push(Case { title: test.title.clone(), span: test.span, outcome: Outcome::Faulted(fault.clone()) });

@@ -9,8 +9,8 @@ use crate::run;
 use crate::scratch;
 use crate::session::Session;
 use staunch_host::{Expectations, Machine, Map, Moment, Options, When, csv_cells};
-use staunch_ir::Program;
 use staunch_ir::layout::Layout;
+use staunch_ir::{ClassKind, Program};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
@@ -47,12 +47,33 @@ pub fn tables(session: &Session) -> Result<Vec<Table>, String> {
 fn subject(session: &Session, program: &Program, table: &Table) -> Result<Program, String> {
     let is_own = |it: &staunch_ir::Instance| program.class(it.program).location.file == table.file;
     if !program.instances.iter().any(is_own) {
+        let is_known = session.project.program.is_some() || program.instances.len() < 2 || session.configured(program);
+        if !is_known {
+            let names: Vec<_> = program.instances.iter().map(|it| format!("`{}`", it.name)).collect();
+            let which = "no CONFIGURATION says which PROGRAMs run, and none is in the source that the table is beside";
+            return Err(format!("{which}: there are {}", names.join(", ")));
+        }
         return session.choose(program, None);
     }
     let mut program = program.clone();
     let classes: Vec<_> = program.classes.iter().map(|it| it.location.file).collect();
     program.instances.retain(|it| classes[it.program.index()] == table.file);
+    // Of several that no CONFIGURATION runs, `run` asks which one is meant.
+    if !session.configured(&program) {
+        program.instances.iter_mut().for_each(|it| it.priority = 0);
+    }
     Ok(program)
+}
+
+/// What is said besides where a table does not fit: a CONFIGURATION that leaves out the PROGRAMs of its source.
+fn idle(session: &Session, program: &Program, table: &Table) -> String {
+    let is_own = |it: &&staunch_ir::Class| it.kind == ClassKind::Program && it.location.file == table.file;
+    let own: Vec<_> = program.classes.iter().filter(is_own).map(|it| format!("`{}`", it.name)).collect();
+    if own.is_empty() || program.instances.iter().any(|it| program.class(it.program).location.file == table.file) {
+        return String::new();
+    }
+    let source = &session.sources.get(table.file).path;
+    format!("\nno CONFIGURATION runs what {source} has: {}", own.join(", "))
 }
 
 /// Runs a table; what is wrong with the file itself fails the test, too.
@@ -63,7 +84,8 @@ pub fn run(
     table: &Table,
     counts: Option<&Mutex<Counts>>,
 ) -> Outcome {
-    ran(session, suite, program, table, counts).unwrap_or_else(|error| Outcome::Differs(vec![error]))
+    ran(session, suite, program, table, counts)
+        .unwrap_or_else(|error| Outcome::Differs(error.lines().map(str::to_owned).collect()))
 }
 
 fn ran(
@@ -73,11 +95,13 @@ fn ran(
     table: &Table,
     counts: Option<&Mutex<Counts>>,
 ) -> Result<Outcome, String> {
+    let idle = idle(session, program, table);
     let program = subject(session, program, table)?;
     let bytes = fs::read(&table.path).map_err(|error| format!("{}: {error}", table.path.display()))?;
     let map = machine::map(&program)?;
     let running: Vec<usize> = (0..map.instances.len()).collect();
-    let expected = Expectations::parse(&table.path, &bytes, &map, &running).map_err(|error| error.to_string())?;
+    let expected = Expectations::parse(&table.path, &bytes, &map, &running);
+    let expected = expected.map_err(|error| format!("{error}{idle}"))?;
     let folder = scratch::folder()?;
     let trace = folder.path().join("trace.csv");
     let options = Options {

@@ -286,3 +286,72 @@ fn mocks_run_in_place_of_functions_and_blocks() {
     assert_eq!(folder.staunch("build mocks.st --dialect siemens --emit rust -o out.rs").code, 0);
     assert!(!folder.read("out.rs").contains("__kept_payload"));
 }
+
+/// A fault ends the run of a fixture's tests, and the others are another run: what each executes counts. Neither a fixture's base
+/// nor what a mock adds is the program's.
+#[test]
+fn what_the_tests_of_a_fixture_execute() {
+    let source = "FUNCTION Twice : INT VAR_INPUT a : INT; END_VAR
+    Twice := a * 2;
+END_FUNCTION
+FUNCTION Ratio : INT VAR_INPUT a, b : INT; END_VAR
+    Ratio := a / b;
+END_FUNCTION
+FUNCTION Half : INT VAR_INPUT a : INT; END_VAR
+    Half := a / 2;
+END_FUNCTION
+FUNCTION Raw : INT VAR_INPUT a : INT; END_VAR
+    Raw := a * 2;
+END_FUNCTION
+";
+    let tests = "FUNCTION Fake : INT VAR_INPUT a : INT; END_VAR
+    Fake := 7;
+END_FUNCTION
+NAMESPACE My.Tests
+    USING AxUnit.Assert;
+    {TestFixture}
+    CLASS ABSTRACT Base
+        {Test}
+        METHOD PUBLIC A_Twice
+            Equal(expected := 4, actual := Twice(2));
+        END_METHOD
+    END_CLASS
+    {TestFixture}
+    CLASS Fix EXTENDS Base
+        {Test}
+        METHOD PUBLIC B_Ratio
+            Equal(expected := 0, actual := Ratio(1, 0));
+        END_METHOD
+        {Test}
+        METHOD PUBLIC C_Half
+            Equal(expected := 2, actual := Half(4));
+        END_METHOD
+        {Test}
+        METHOD PUBLIC D_Raw
+            AxUnit.Mocking.Mock(NAME_OF(Raw), NAME_OF(Fake));
+            Equal(expected := 7, actual := Raw(3));
+        END_METHOD
+    END_CLASS
+END_NAMESPACE
+";
+    let folder = Folder::with("axunit_coverage", &[("f.st", source), ("f_test.st", tests)]);
+    for backend in ["native", "interpret"] {
+        let out = folder.staunch(&format!("test . --coverage table --backend {backend}")).out(1);
+        has(
+            &out,
+            &["\nf.st           3 of 4  75 %              none              none\n", "\nf.st:11:5: not executed\n"],
+        );
+        has(&out, &["\nf_test.st      1 of 1 100 %              none              none\n", "3 passed, 1 failed"]);
+    }
+    // In f.st four statements, four operators, and three numbers up and down; in `Fake` a statement and a number.
+    let passing = tests.replace("Ratio(1, 0)", "Ratio(0, 1)");
+    folder.write("f_test.st", &passing);
+    let out = folder.staunch("test . --mutants --message-format json").out;
+    assert_eq!(figure(&out, "killed") + figure(&out, "survived"), 4 + 4 + 6 + 3, "{out}");
+}
+
+/// The number after a word in what is written for machines.
+fn figure(text: &str, word: &str) -> u32 {
+    let (_, rest) = text.split_once(&format!("\"{word}\":")).unwrap();
+    rest.split([',', '}']).next().unwrap().parse().unwrap()
+}

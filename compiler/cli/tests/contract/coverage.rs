@@ -187,3 +187,131 @@ END_TEST
     let ran = folder.staunch("test f.st --coverage table");
     has(&ran.out, &["f.st:4:8: never FALSE: NOT (a AND b)", "f.st:4:13: not shown to decide: a"]);
 }
+
+/// What may fault is evaluated before a call that is written after it; that makes no other decision of the same text.
+#[test]
+fn a_decision_is_one_however_it_is_evaluated() {
+    let source = "FUNCTION InBand : BOOL
+VAR_INPUT v : INT; END_VAR
+    InBand := v > 10;
+END_FUNCTION
+FUNCTION_BLOCK Gate
+VAR_INPUT ch : INT := 1; key : BOOL; level, total, parts : INT; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+VAR sensor : ARRAY[1..4] OF BOOL; END_VAR
+    q := InBand(level) OR (sensor[ch] AND key);
+    q := (sensor[ch] AND key) OR InBand(level);
+    q := (total / parts > 3 AND key) OR InBand(level);
+    q := (sensor[ch] OR_ELSE key) AND NOT (key OR sensor[ch]) OR InBand(level);
+END_FUNCTION_BLOCK
+TEST 'InBand is TRUE in all calls, so nothing beside it decides'
+VAR g : Gate; END_VAR
+    g.sensor[1] := TRUE;
+    g(key := TRUE, level := 15, total := 8, parts := 2);
+    g(key := FALSE, level := 15);
+    g.sensor[1] := FALSE;
+    g(key := TRUE, level := 15, total := 4);
+END_TEST
+";
+    let folder = Folder::with("coverage_order", &[("g.st", source)]);
+    let out = folder.staunch("test . -q --coverage table").out(0);
+    // In line 12 `sensor[ch]` is a decision of its own before OR_ELSE, and is both TRUE and FALSE; `key` after it is evaluated once.
+    let open = "g.st:9:10: not shown to decide: InBand(level)
+g.st:9:28: not shown to decide: sensor[ch]
+g.st:9:43: not shown to decide: key
+g.st:10:11: not shown to decide: sensor[ch]
+g.st:10:26: not shown to decide: key
+g.st:10:34: not shown to decide: InBand(level)
+g.st:11:11: not shown to decide: total / parts > 3
+g.st:11:33: not shown to decide: key
+g.st:11:41: not shown to decide: InBand(level)
+g.st:12:11: not shown to decide: sensor[ch] OR_ELSE key
+g.st:12:30: not shown to decide: key
+g.st:12:44: not shown to decide: key
+g.st:12:51: not shown to decide: sensor[ch]
+g.st:12:66: not shown to decide: InBand(level)
+";
+    has(&out, &[open]);
+}
+
+#[test]
+fn a_decision_of_more_than_ten_conditions_is_one() {
+    let source = "FUNCTION Ready : BOOL
+VAR_INPUT a, b, c, d, e, f, g, h, i, j, k : BOOL; END_VAR
+    Ready := a AND b AND c AND d AND e AND f AND g AND h AND i AND j AND k;
+    IF (a OR b OR c OR d OR e OR f OR g OR h OR i OR j) AND (k AND b) = a THEN Ready := FALSE; END_IF
+END_FUNCTION
+TEST 'k is FALSE in both'
+    ASSERT_FALSE(Ready(TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, FALSE));
+    ASSERT_FALSE(Ready(FALSE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, TRUE, FALSE));
+END_TEST
+";
+    let folder = Folder::with("coverage_many", &[("f.st", source)]);
+    let out = folder.staunch("test . -q --coverage table").out(0);
+    has(&out, &["f.st:3:14: not shown to decide: a AND b AND c AND d AND e AND f AND g AND h AND i AND j AND k\n"]);
+    // The decision of line 3, that of line 4, which is TRUE once and FALSE once, and the two conditions of the one in it.
+    has(
+        &out,
+        &[
+            "2 of 2 100 %      1 of 4  25 %\n",
+            "f.st:4:62: not shown to decide: k\n",
+            "f.st:4:68: not shown to decide: b\n",
+        ],
+    );
+}
+
+#[test]
+fn a_condition_is_shown_as_it_is_written() {
+    let source = "FUNCTION F : BOOL VAR_INPUT x, y : INT; END_VAR F := x > y; END_FUNCTION
+FUNCTION_BLOCK L
+VAR_INPUT a, b, c : BOOL; x, y : INT; w : WORD; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+    q := a AND (w AND 16#1) <> 0;
+    q := (a OR b) = c AND BOOL_TO_INT(a OR b) + x > 1;
+    q := a AND (x + 1) * 2 > 3;
+    IF a AND
+       F(x, (* first, second *)
+         y) // and a text
+       OR w = 16#2
+    THEN q := TRUE; END_IF
+END_FUNCTION_BLOCK
+TEST 'v' VAR l : L; END_VAR l(x := 1); END_TEST
+";
+    let folder = Folder::with("coverage_written", &[("l.st", source)]);
+    let out = folder.staunch("test . -q --coverage table").out(0);
+    let open = "
+l.st:5:10: not shown to decide: a
+l.st:5:16: not shown to decide: (w AND 16#1) <> 0
+l.st:6:10: not shown to decide: (a OR b) = c
+l.st:6:11: not shown to decide: a
+l.st:6:16: not shown to decide: b
+l.st:6:27: not shown to decide: BOOL_TO_INT(a OR b) + x > 1
+l.st:6:39: not shown to decide: a
+l.st:6:44: not shown to decide: b
+l.st:7:10: not shown to decide: a
+l.st:7:16: not shown to decide: (x + 1) * 2 > 3
+l.st:8:8: never TRUE: a AND F(x, y) OR w = 16#2
+l.st:8:8: not shown to decide: a
+l.st:9:8: not shown to decide: F(x, y)
+l.st:11:11: not shown to decide: w = 16#2
+";
+    has(&out, &[open]);
+}
+
+/// Both conditions decide in both calls, but the result is the same: lcov shows what the table does.
+#[test]
+fn lcov_has_what_the_table_has() {
+    let source = "FUNCTION Differ : BOOL
+VAR_INPUT a, b : BOOL; END_VAR
+    Differ := a XOR b;
+END_FUNCTION
+TEST 'never TRUE'
+    ASSERT_FALSE(Differ(FALSE, FALSE));
+    ASSERT_FALSE(Differ(TRUE, TRUE));
+END_TEST
+";
+    let folder = Folder::with("coverage_xor", &[("x.st", source)]);
+    has(&folder.staunch("test . -q --coverage table --coverage x.info").out(0), &["0 of 2   0 %"]);
+    let lcov = folder.read("x.info");
+    has(&lcov, &["MCDC:3,2,t,1,0,a\nMCDC:3,2,f,0,0,a\nMCDC:3,2,t,1,1,b\nMCDC:3,2,f,0,1,b\nMCF:4\nMCH:2\n"]);
+}

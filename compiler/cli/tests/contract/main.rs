@@ -11,6 +11,7 @@ mod coverage;
 mod external;
 mod lists;
 mod mutants;
+mod near;
 mod page;
 #[cfg(unix)]
 mod power;

@@ -152,8 +152,75 @@ fn a_table_runs_the_program_of_its_source() {
     let out = folder.staunch("test .").out(1);
     has(
         &out,
-        &["c.st\n  ok      beside\na.csv\n  ok      a\nb.csv\n  ok      b\nc.csv\n  FAILED  c\n", "several programs"],
+        &[
+            "c.st\n  ok      beside\na.csv\n  ok      a\nb.csv\n  ok      b\nc.csv\n  FAILED  c\n",
+            "no CONFIGURATION says which PROGRAMs run",
+            "there are `A`, `B`\n",
+        ],
     );
     has(&folder.staunch("test a.st").out(0), &["1 passed, 0 failed"]);
     has(&folder.staunch("test . -q").out(1), &["c.csv\n  FAILED  c\n"]);
+}
+
+/// A reads what B has written in the scan before.
+#[test]
+fn several_programs_of_one_source_run_in_their_order() {
+    let source = "VAR_GLOBAL shared : INT; END_VAR
+PROGRAM A
+VAR_INPUT i : INT; END_VAR
+VAR_OUTPUT o : INT; END_VAR
+VAR_EXTERNAL shared : INT; END_VAR
+    o := i + shared;
+END_PROGRAM
+PROGRAM B
+VAR_INPUT k : INT; END_VAR
+VAR_EXTERNAL shared : INT; END_VAR
+    shared := k;
+END_PROGRAM
+";
+    let table = "i,k,|,o,shared\n1,2,|,1,2\n,5,|,3,5\n,,|,6,5\n";
+    let other = "PROGRAM Other\nVAR n : INT; END_VAR\n    n := n + 1;\nEND_PROGRAM\n";
+    let folder = Folder::with("table_several", &[("x.st", source), ("x.csv", table), ("other.st", other)]);
+    for backend in ["native", "interpret", "rust"] {
+        has(&folder.staunch(&format!("test . --backend {backend}")).out(0), &["ok      x\n", "1 passed, 0 failed"]);
+    }
+    folder.write("plant.st", "CONFIGURATION Plant\nPROGRAM run : Other;\nEND_CONFIGURATION\n");
+    has(
+        &folder.staunch("test . -A warnings").out(1),
+        &[
+            "x.csv:1:7: there is no variable `o`; did you mean `n`?\n          no CONFIGURATION runs what x.st has: `A`, `B`\n",
+        ],
+    );
+}
+
+/// A table has no mocks: what a library declares without a body fails the row that calls it.
+#[test]
+fn a_table_beside_calls_without_a_body() {
+    let program = "PROGRAM Main
+VAR_INPUT go : BOOL; END_VAR
+VAR_OUTPUT e : INT; END_VAR
+    IF go THEN e := Ext(3); END_IF
+END_PROGRAM
+";
+    let library = "FUNCTION Ext : INT\nVAR_INPUT a : INT; END_VAR\nEND_FUNCTION\n";
+    let folder = Folder::new("table_bodies");
+    std::fs::create_dir(folder.0.join("lib")).unwrap();
+    folder.write("lib/x.st", library);
+    folder.write("staunch.toml", "files = [\"main.st\"]\nlibraries = [\"lib\"]\n");
+    folder.write("main.st", program);
+    for (table, code, said) in [
+        ("go,|,e\nFALSE,|,0\n", 0, "ok      main\n"),
+        (
+            "go,|,e\nFALSE,|,0\nTRUE,|,0\n",
+            1,
+            "          lib/x.st:1:10: fault: what is called is not implemented here (scan 2, program Main)
+          FUNCTION Ext : INT
+          the program calls `Ext`, which has no body here: a TEST may replace it, by `MOCK_FUNCTION Ext RETURNS value;`\n",
+        ),
+    ] {
+        folder.write("main.csv", table);
+        for backend in ["native", "interpret", "rust"] {
+            has(&folder.staunch(&format!("test --backend {backend}")).out(code), &[said]);
+        }
+    }
 }

@@ -190,3 +190,106 @@ END_FUNCTION_BLOCK
         has(&ran.out, &["ok      T.literals", "1 passed, 2 failed"]);
     }
 }
+
+/// By its address a suite writes what others may only read.
+#[test]
+fn suites_write_what_is_protected() {
+    let source = "FUNCTION_BLOCK Part
+VAR x : INT; END_VAR
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Machine
+VAR_INPUT go : BOOL; name : STRING; END_VAR
+VAR_OUTPUT done : BOOL; END_VAR
+VAR count : INT := 3; part : Part; sensor AT %I* : INT; wait : TIME; since : DT; share : LREAL; END_VAR
+    count := count + 1;
+    done := count > 10 AND go;
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK MachineTest EXTENDS TcUnit.FB_TestSuite
+VAR machine : Machine; END_VAR
+    TEST('writes');
+    WRITE_PROTECTED_INT(Ptr := ADR(machine.count), Value := 20);
+    WRITE_PROTECTED_INT(ADR(machine.part.x), 21);
+    WRITE_PROTECTED_INT(ADR(machine.sensor), 22);
+    TcUnit.WRITE_PROTECTED_BOOL(ADR(machine.go), TRUE);
+    WRITE_PROTECTED_STRING(ADR(machine.name), 'abc');
+    WRITE_PROTECTED_TIME(ADR(machine.wait), T#3S);
+    WRITE_PROTECTED_DATE_AND_TIME(ADR(machine.since), DT#2024-01-01-00:00:00);
+    write_protected_lreal(ADR(machine.share), 0.5);
+    TCUNIT_ADSLOGSTR(ADSLOG_MSGTYPE_HINT, 'machine %s', 'A');
+    machine();
+    AssertTrue(machine.done, 'done');
+    AssertEquals_INT(21, machine.count, 'count');
+    AssertEquals_INT(21, machine.part.x, 'part');
+    AssertEquals_INT(22, machine.sensor, 'sensor');
+    AssertEquals_STRING('abc', machine.name, 'name');
+    AssertEquals_TIME(T#3S, machine.wait, 'wait');
+    AssertEquals_DATE_AND_TIME(DT#2024-01-01-00:00:00, machine.since, 'since');
+    AssertEquals_LREAL(0.5, machine.share, 0.0, 'share');
+    TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tcunit_protected", &[("m.st", source)]);
+    for backend in ["native", "interpret", "rust"] {
+        let ran = folder.staunch(&format!("test . --dialect codesys --backend {backend}"));
+        has(&ran.out(0), &["ok      MachineTest.writes\n", "1 passed, 0 failed"]);
+    }
+}
+
+/// Member by member: what is after the end of a text, and between members, does not count.
+#[test]
+fn structures_and_arrays_are_compared() {
+    let source = "TYPE
+    Part : STRUCT b : BYTE; x : LREAL; s : STRING(10); END_STRUCT
+    Whole : STRUCT flag : BOOL; code : INT; list : ARRAY[1..3, 0..1] OF Part; END_STRUCT
+END_TYPE
+FUNCTION Made : Whole
+VAR_INPUT code : INT; END_VAR
+    Made.code := code;
+END_FUNCTION
+FUNCTION_BLOCK Wholes EXTENDS TcUnit.FB_TestSuite
+VAR all : ARRAY[0..3] OF Whole; i : INT; c, d, none : Whole; big, big2 : ARRAY[0..20000] OF INT; END_VAR
+    TEST('same');
+    i := 2;
+    all[2].list[2, 1].s := 'abc$00xyz';
+    all[2].list[2, 1].s := 'abc';
+    c.list[2, 1].s := 'abc';
+    all[2].list[3, 0].x := 0.5;
+    c.list[3, 0].x := 0.5;
+    AssertEquals(Expected := c, Actual := all[i], Message := 'elements');
+    AssertEquals(big, big2, 'arrays');
+    AssertEquals(Made(7), Made(7), 'results');
+    TEST_FINISHED();
+    TEST('a member'); d := none; d.code := 5; AssertEquals(none, d, ''); TEST_FINISHED();
+    TEST('an element'); d := none; d.list[3, 1].b := 1; AssertEquals(none, d, ''); TEST_FINISHED();
+    TEST('a text'); d := none; d.list[1, 1].s := 'a'; AssertEquals(none, d, ''); TEST_FINISHED();
+    TEST('a result'); AssertEquals(Made(8), none, ''); TEST_FINISHED();
+    TEST('an array'); big2[20000] := 1; AssertEquals(big, big2, ''); TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tcunit_wholes", &[("w.st", source)]);
+    for backend in ["native", "interpret", "rust"] {
+        let out = folder.staunch(&format!("test . --dialect codesys --backend {backend}")).out(1);
+        has(&out, &["ok      Wholes.same\n", "1 passed, 5 failed"]);
+        has(&out, &["AssertEquals(none, d, '')\n          expected to be the same, code differs\n"]);
+        has(&out, &["expected to be the same, list[…][…].b differs\n"]);
+        has(&out, &["expected to be the same, list[…][…].s differs\n", "expected to be the same, […] differs\n"]);
+    }
+}
+
+/// TcUnit passes over a name that no test has.
+#[test]
+fn a_test_that_is_finished_by_another_name_is_told() {
+    let source = "FUNCTION_BLOCK Starts EXTENDS TcUnit.FB_TestSuite
+    TEST('starts'); TEST_FINISHED_NAMED('strats');
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Ends EXTENDS TcUnit.FB_TestSuite
+    TEST('  one '); TEST_FINISHED_NAMED('typo'); TEST_FINISHED_NAMED('one');
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tcunit_finished", &[("s.st", source)]);
+    let out = folder.staunch("test . --dialect codesys --scans 3").out(1);
+    has(&out, &["FAILED  Starts.starts\n", "ok      Ends.one\n", "1 passed, 1 failed, 2 skipped\n"]);
+    for title in ["Starts.strats", "Ends.typo"] {
+        has(&out, &[&format!("skipped {title}: TEST_FINISHED_NAMED names it, and the suite never begins it\n")]);
+    }
+}

@@ -69,7 +69,7 @@ VAR main : Main; END_VAR
 END_TEST
 ";
 
-const BACKENDS: [&str; 3] = ["native", "interpret", "rust"];
+pub const BACKENDS: [&str; 3] = ["native", "interpret", "rust"];
 
 #[test]
 fn tests_pass() {
@@ -174,7 +174,7 @@ TEST 'equal' ASSERT_EQ(3, 3); END_TEST
     for backend in BACKENDS {
         let out = folder.staunch(&format!("test tests.st --backend {backend}")).out(1);
         has(&out, &["expected to be 4, found 3\n", "expected to be greater than T#2s, found T#1s\n"]);
-        has(&out, &["expected to be near 1.5, found 1.0\n", "\n2 passed, 3 failed\n"]);
+        has(&out, &["expected to be within 0.1 of 1.5, found 1.0\n", "\n2 passed, 3 failed\n"]);
     }
 }
 
@@ -419,4 +419,69 @@ TEST 'heir' VAR own : Own; END_VAR MOCK own; own(speed := 3); ASSERT_EQ(own.n, 0
     folder.write("t.st", "FUNCTION F : INT F := 1; END_FUNCTION TEST 'a' MOCK_VERIFY_CALL_COUNT(F, 1); END_TEST");
     let refused = folder.staunch("test t.st").err(1);
     has(&refused, &["no calls of the FUNCTION `F` are counted", "`MOCK_FUNCTION F RETURNS value;`"]);
+}
+
+/// What lies at an address is a member of its PROGRAM, in every dialect: a test sets and reads it.
+#[test]
+fn a_test_sees_what_lies_at_an_address() {
+    let source = "PROGRAM Main
+VAR i AT %IX0.0 : BOOL; o AT %QW2 : INT; b AT %IB4 : BYTE; n : INT; list : ARRAY[0..3] OF INT; END_VAR
+    IF i THEN n := n + 1; END_IF
+    o := n;
+    IF b.3 THEN list[2] := 7; END_IF
+END_PROGRAM
+TEST 'located'
+VAR m : Main; END_VAR
+    m.i := TRUE;
+    m.b := 8;
+    m();
+    ASSERT_EQ(m.o, 1);
+    ASSERT_EQ(%QW2, 1);
+    ASSERT_EQ(m.list[2], 7);
+    %IX0.0 := FALSE;
+    m();
+    ASSERT_EQ(m.n, 1);
+    ASSERT_FALSE(m.i);
+END_TEST
+";
+    for dialect in ["iec", "codesys"] {
+        let text = source.replace("m.b := 8", if dialect == "iec" { "m.b := BYTE#8" } else { "m.b := 8" });
+        let folder = Folder::with(&format!("tests_located_{dialect}"), &[("m.st", &text)]);
+        for backend in BACKENDS {
+            let ran = folder.staunch(&format!("test . --dialect {dialect} --backend {backend}"));
+            assert_eq!((ran.code, ran.err.as_str()), (0, ""), "{dialect} {backend} {}", ran.out);
+        }
+    }
+}
+
+#[test]
+fn what_there_is_to_run_is_said() {
+    let suites = "{dialect 'codesys'}
+FUNCTION_BLOCK Good EXTENDS TcUnit.FB_TestSuite
+    TEST('adds'); AssertEquals_INT(2, 2, ''); TEST_FINISHED();
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Bad EXTENDS TcUnit.FB_TestSuite
+VAR z : INT; s : STRING := 'divides'; END_VAR
+    TEST(s); z := 5 / z; TEST_FINISHED();
+END_FUNCTION_BLOCK
+";
+    let folder = Folder::with("tests_to_run", &[("s.st", suites)]);
+    assert_eq!(folder.staunch("test s.st --filter adds").out(0), "s.st\n  ok      Good.adds\n\n1 passed, 0 failed\n");
+    has(&folder.staunch("test s.st --filter divides").out(1), &["FAILED  Bad.divides\n", "0 passed, 1 failed"]);
+    has(&folder.staunch("test s.st --filter none").err(2), &["no test has `none` in its title; there are 2 suites\n"]);
+    let empty = "{dialect 'codesys'}\nFUNCTION_BLOCK Empty EXTENDS TcUnit.FB_TestSuite\n;\nEND_FUNCTION_BLOCK\n";
+    folder.write("e.st", empty);
+    has(&folder.staunch("test e.st").err(2), &["no test is there to run"]);
+    folder.write("f.st", "{TestFixture}\nCLASS Fixture\nEND_CLASS\n");
+    has(&folder.staunch("test f.st").err(2), &["no test is there to run"]);
+    folder.write("one.st", "TEST \"a $\"quoted$\" one, $$5\" ASSERT_TRUE(FALSE); END_TEST\n");
+    has(&folder.staunch("test one.st --filter none").err(2), &["there is 1 test\n"]);
+    let ran = folder.staunch("test one.st --mutants");
+    has(&ran.out, &["FAILED  a \"quoted\" one, $5\n"]);
+    has(&ran.err(1), &["the mutants: they are tried where all tests pass"]);
+    folder.write("one.csv", "n,|,n\n");
+    has(
+        &folder.staunch("test one.csv").err(2),
+        &["one.csv is a table, no source: name the source that it is beside, one.st"],
+    );
 }

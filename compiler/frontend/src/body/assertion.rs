@@ -31,12 +31,13 @@ pub(super) struct Claim {
     pub wants: &'static str,
     pub actual: Option<String>,
     pub expected: Option<String>,
+    pub tolerance: Option<String>,
     pub compares_texts: bool,
 }
 
 impl Claim {
     pub fn new(holds: Expr, wants: &'static str) -> Self {
-        Self { holds, wants, actual: None, expected: None, compares_texts: false }
+        Self { holds, wants, actual: None, expected: None, tolerance: None, compares_texts: false }
     }
 
     pub fn of(holds: Expr, wants: &'static str, actual: String, expected: String) -> Self {
@@ -168,13 +169,14 @@ impl<'s> Checker<'_, 's> {
             this.push(StatementKind::Return, span);
         });
         self.push(StatementKind::If { condition: holds, then, otherwise: Vec::new() }, span);
-        let Claim { wants, actual, expected, compares_texts, .. } = claim;
+        let Claim { wants, actual, expected, tolerance, compares_texts, .. } = claim;
         self.decl.tests.assertions.entry(slot).or_default().push(Assertion {
             span,
             wants,
             compares_texts,
             actual,
             expected,
+            tolerance,
             message: shown,
         });
         Some(())
@@ -239,30 +241,8 @@ impl<'s> Checker<'_, 's> {
         Some(Sides { a, b, left: left.span, right: right.span, op, op_span: span, span, hint: None })
     }
 
-    /// `ABS(actual - expected) <= tolerance`.
-    pub(super) fn near(&mut self, both: [&ast::Expr<'s>; 2], tolerance: &ast::Expr<'s>, span: Span) -> Option<Claim> {
-        let [left, right] = both;
-        let sides = self.sides(both, BinaryOp::Sub, span)?;
-        let constants = [sides.a.clone(), sides.b.clone()];
-        let difference = self.combine(sides)?;
-        let difference = self.materialise(difference, None, span)?;
-        let ty = difference.ty;
-        let (difference, [actual, expected]) = if let ExprKind::Apply(op, operands) = difference.kind {
-            let [a, b] = <[Expr; 2]>::try_from(operands).ok()?;
-            let (a, actual) = self.keep("actual", a, left.span)?;
-            let (b, expected) = self.keep("expected", b, right.span)?;
-            (Expr::new(ty, ExprKind::Apply(op, vec![a, b]), difference.at), [actual, expected])
-        } else {
-            (difference, self.keep_constants(constants, both)?)
-        };
-        let distance = self.apply(Op::Abs, ty, vec![difference], ty, span)?;
-        let limit = self.value(tolerance, ty)?;
-        let holds = self.apply(Op::Le, ty, vec![distance, limit], Type::BOOL, span)?;
-        Some(Claim::of(holds, "to be near {}", actual, expected))
-    }
-
     /// The names of what keeps two constants, whose comparison is known.
-    fn keep_constants(&mut self, constants: [Operand; 2], both: [&ast::Expr<'s>; 2]) -> Option<[String; 2]> {
+    pub(super) fn keep_constants(&mut self, constants: [Operand; 2], both: [&ast::Expr<'s>; 2]) -> Option<[String; 2]> {
         let [actual, expected] = constants;
         let [left, right] = both.map(|it| it.span);
         let actual = self.materialise(actual, None, left)?;

@@ -143,7 +143,7 @@ impl<'s> Checker<'_, 's> {
             return payload.map_or(Some(()), |it| self.operand(it, None).map(drop));
         }
         let places = (self.decl.pous[a].ast.name.span, self.decl.pous[b].ast.name.span);
-        let Some((exchanged, which)) = self.decl.tests.exchanged.get(&places).copied() else {
+        let Some((exchanged, which)) = self.decl.tests.exchanged.numbers.get(&places).copied() else {
             let [a, b] = [a, b].map(|it| self.decl.name_in_full(self.decl.pous[it].ast.name));
             self.report(
                 Diagnostic::new(Code::E0316, mock.span, format!("`{b}` cannot run in place of `{a}`"))

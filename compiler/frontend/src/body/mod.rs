@@ -8,8 +8,10 @@ mod exception;
 mod external;
 mod jump;
 mod loops;
+mod near;
 mod statement;
 mod suite;
+mod whole;
 
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
@@ -186,7 +188,8 @@ fn check_body<'s>(
         }
         None => checker.block_of(statements),
     };
-    if pou.is_stub && checker.decl.log.options.tests {
+    let options = checker.decl.log.options;
+    if pou.is_stub && (options.tests || options.is_tested) {
         body.append(&mut checker.not_there(pou.name.span));
     }
     checker.migration_lints(statements);

@@ -2,6 +2,7 @@
 //! what it compared. The rest of TcUnit is Structured Text, in the library.
 
 use super::assertion::Claim;
+use super::near::WITHIN;
 use crate::expr::any_input::class_of;
 use crate::expr::checker::Checker;
 use crate::expr::method::is_this;
@@ -183,6 +184,9 @@ impl<'s> Checker<'_, 's> {
             }
             return self.other_classes([expected, actual], span);
         }
+        if Self::is_made_of_others(&sides.a) || Self::is_made_of_others(&sides.b) {
+            return self.equal_wholes([sides.a, sides.b], both, span);
+        }
         let claim = self.comparison_of(sides, both, "to be {}")?;
         let (actual, expected) = (claim.expected, claim.actual);
         Some(Claim { actual, expected, ..claim })
@@ -230,11 +234,13 @@ impl<'s> Checker<'_, 's> {
         let ty = Type::Elementary(ty);
         let [(a, wanted), (b, found)] = self.values_of(ty, [expected, actual])?;
         let limit = self.value(delta, ty)?;
+        let (limit, tolerance) = self.keep("tolerance", limit, delta.span)?;
         let difference = self.apply(Op::Sub, ty, vec![a, b], ty, span)?;
         let distance = self.apply(Op::Abs, ty, vec![difference], ty, span)?;
         let is_far = self.apply(Op::Gt, ty, vec![distance, limit], Type::BOOL, span)?;
         let at = self.at(span);
-        Some(Claim::of(Expr::apply(Op::Not, Type::BOOL, vec![is_far], at), "to be near {}", found, wanted))
+        let holds = Expr::apply(Op::Not, Type::BOOL, vec![is_far], at);
+        Some(Claim { tolerance: Some(tolerance), ..Claim::of(holds, WITHIN, found, wanted) })
     }
 
     /// By a METHOD of the suite, which leaves where they differ.
@@ -298,7 +304,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<()> {
         let compared = std::mem::take(&mut self.compared);
         let at = self.at(span);
-        let Claim { holds, wants, actual, expected, compares_texts } = claim;
+        let Claim { holds, wants, actual, expected, tolerance, compares_texts } = claim;
         let is_run = self.decl.log.options.tests;
         let mut shown = None;
         let number = self.decl.tests.shared.len() + 1;
@@ -329,7 +335,7 @@ impl<'s> Checker<'_, 's> {
         let condition = Expr::apply(Op::Not, Type::BOOL, vec![holds], at);
         self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
         if is_run {
-            let assertion = Assertion { span, wants, compares_texts, actual, expected, message: shown };
+            let assertion = Assertion { span, wants, compares_texts, actual, expected, tolerance, message: shown };
             self.decl.tests.shared.push(assertion);
         }
         Some(())

@@ -17,7 +17,7 @@ impl<'s> Checker<'_, 's> {
     /// A counter or timer that is called twice in a scan sees two edges, or none.
     pub(super) fn note_called(&mut self, place: &Place, arguments: &[ast::Argument<'s>], callee: &ast::Expr<'s>) {
         // A test calls again and again, and says itself when time passes.
-        if self.is_test() || is_latch(place.ty) || self.is_at_once(place.ty) {
+        if self.is_of_tests() || is_latch(place.ty) || self.is_at_once(place.ty) {
             return;
         }
         if only_resets(place.ty, arguments) {

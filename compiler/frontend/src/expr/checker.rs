@@ -6,6 +6,7 @@ use super::uses::Uses;
 use crate::spelling::Key;
 use crate::testing::suite::WANTED;
 use crate::types::counter::Counter;
+use crate::types::coverage::Role;
 use crate::types::declarations::Declarations;
 use crate::types::jumps::Jumps;
 use crate::types::scope::Scope;
@@ -54,6 +55,8 @@ pub(crate) struct Checker<'d, 's> {
     pub late: Option<LateTarget<'s>>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
+    /// Where the BOOLs are written that are counted, by what they have of that in the IR.
+    pub written: FxHashMap<(Location, Role), Span>,
     /// The structure whose members' declarations are followed: THIS means it there.
     pub this_structure: Option<Place>,
     /// What an assertion of a suite compares: the globals that keep it if the assertion fails.
@@ -103,6 +106,7 @@ impl<'d, 's> Checker<'d, 's> {
             may_not_run: false,
             late: None,
             is_covered: false,
+            written: FxHashMap::default(),
             this_structure: None,
             compared: Vec::new(),
         }
@@ -123,6 +127,11 @@ impl<'d, 's> Checker<'d, 's> {
     /// Whether the body is one of a TcUnit suite.
     pub(crate) fn is_suite(&self) -> bool {
         self.scope.get(WANTED).is_some()
+    }
+
+    /// Whether the body is one of a unit test, whatever its kind: it stands in for what is around a program.
+    pub(crate) fn is_of_tests(&self) -> bool {
+        self.is_test() || self.is_suite() || self.slot.is_some_and(|it| self.decl.is_of_fixture(it))
     }
 
     /// Whether the body is that of a run in a CONFIGURATION.

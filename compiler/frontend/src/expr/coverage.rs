@@ -4,7 +4,8 @@
 use crate::Span;
 use crate::ast::{self, BinaryOp, ExprKind as Ast, PouKind};
 use crate::expr::checker::Checker;
-use crate::types::coverage::{Condition, CoverageKind, CoveragePoint, Decision, Formula, Sort};
+use crate::expr::operand::Operand;
+use crate::types::coverage::{Condition, CoverageKind, CoveragePoint, Decision, Formula, Role, Sort};
 use crate::types::declarations::Declarations;
 use crate::types::table::Resolved;
 use staunch_ir::{
@@ -20,6 +21,22 @@ const MOST_CONDITIONS: usize = 10;
 /// The name of what an AND_THEN or OR_ELSE gives, among the temporaries.
 pub(crate) const JOINED: &str = "both";
 
+/// How a BOOL is made of others; `None` for what is a condition.
+fn connective(expr: &Expr) -> Option<fn(Vec<Formula>) -> Formula> {
+    match expr.kind {
+        ExprKind::Apply(Op::And, _) if expr.ty == Type::BOOL => Some(Formula::And),
+        ExprKind::Apply(Op::Or, _) if expr.ty == Type::BOOL => Some(Formula::Or),
+        ExprKind::Apply(Op::Xor, _) if expr.ty == Type::BOOL => Some(Formula::Xor),
+        ExprKind::Apply(Op::Not, _) if expr.ty == Type::BOOL => Some(Formula::Not),
+        _ => None,
+    }
+}
+
+/// Whether a BOOL is made of others by AND, OR, XOR or NOT.
+pub(crate) fn is_decision(expr: &Expr) -> bool {
+    connective(expr).is_some()
+}
+
 /// The conditions of a decision, from left to right.
 #[derive(Default)]
 struct Conditions<'e> {
@@ -28,19 +45,8 @@ struct Conditions<'e> {
 
 impl<'e> Conditions<'e> {
     fn formula(&mut self, expr: &'e Expr) -> Formula {
-        if let ExprKind::Apply(op, operands) = &expr.kind
-            && expr.ty == Type::BOOL
-        {
-            let of: Option<fn(Vec<Formula>) -> Formula> = match *op {
-                Op::And => Some(Formula::And),
-                Op::Or => Some(Formula::Or),
-                Op::Xor => Some(Formula::Xor),
-                Op::Not => Some(Formula::Not),
-                _ => None,
-            };
-            if let Some(of) = of {
-                return of(operands.iter().map(|it| self.formula(it)).collect());
-            }
+        if let (ExprKind::Apply(_, operands), Some(of)) = (&expr.kind, connective(expr)) {
+            return of(operands.iter().map(|it| self.formula(it)).collect());
         }
         if let Some(Value::Bool(value)) = expr.as_const() {
             return Formula::Constant(value);
@@ -54,11 +60,15 @@ impl<'s> Declarations<'s> {
     /// Whether the body of a POU is counted: tests are not, nor is the library.
     pub(crate) fn is_covered(&self, slot: usize) -> bool {
         let pou = &self.pous[slot];
-        let fixtures = &self.tests.fixtures;
-        let is_fixture = |slot: usize| fixtures.contains(&self.pous[slot].ast.name.span);
-        let is_tests = pou.ast.kind == PouKind::Test || is_fixture(slot) || pou.owner.is_some_and(is_fixture);
+        let is_tests = pou.ast.kind == PouKind::Test || self.is_of_fixture(slot);
         let is_own = |files: u16| pou.ast.name.span.file < files && pou.run.is_none() && !is_tests;
         self.coverage.as_ref().is_some_and(|it| is_own(it.files))
+    }
+
+    /// Whether a POU is one of AxUnit's fixtures, or a METHOD of one.
+    pub(crate) fn is_of_fixture(&self, slot: usize) -> bool {
+        let is_fixture = |slot: usize| self.tests.fixtures.contains(&self.pous[slot].ast.name.span);
+        is_fixture(slot) || self.pous[slot].owner.is_some_and(is_fixture)
     }
 
     /// An array of so many counters.
@@ -115,9 +125,10 @@ impl<'s> Checker<'_, 's> {
         self.count_point(Sort::Statement, CoverageKind::Statement, span);
     }
 
-    /// What a mock adds to a body is where the POU's name is.
+    /// What a mock adds to a body is where the POU's name is, or where a test names what runs in its place.
     fn is_made_up(&self, span: Span) -> bool {
-        self.slot.is_some_and(|slot| self.decl.pous[slot].ast.name.span == span)
+        let is_name = self.slot.is_some_and(|slot| self.decl.pous[slot].ast.name.span == span);
+        is_name || self.decl.tests.exchanged.places.contains(&span)
     }
 
     /// An arm of a CASE, by its first label, or that no label holds the value, by the CASE.
@@ -143,8 +154,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = value.filter(|_| self.is_covered && !self.is_made_up(written.span)) {
             // The operands are decisions of their own.
             let is_known = matches!(written.bare().kind, Ast::Binary(_, BinaryOp::AndThen | BinaryOp::OrElse, _));
-            let at = self.at(written.span);
-            self.count_decision(value, Some(at), is_known);
+            self.count_decision(value, Some(written.span), is_known);
         }
     }
 
@@ -155,36 +165,52 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// `branch` is where the condition is written, if one of a branch is.
-    fn count_decision(&mut self, value: &Expr, branch: Option<Location>, is_known: bool) {
+    /// `branch` is what is written, if it is the condition of a branch.
+    fn count_decision(&mut self, value: &Expr, branch: Option<Span>, is_known: bool) {
         let mut conditions = Conditions::default();
-        let mut formula = conditions.formula(value);
-        if conditions.all.len() > MOST_CONDITIONS {
-            (conditions.all, formula) = (vec![value], Formula::Condition(0));
-        }
-        let all = conditions.all;
+        let formula = conditions.formula(value);
+        let within = conditions.all;
+        let is_large = within.len() > MOST_CONDITIONS;
+        let (all, formula) = if is_large { (vec![value], Formula::Condition(0)) } else { (within.clone(), formula) };
         let Some(rows) = u32::try_from(all.len()).ok().filter(|it| *it > 0).map(|it| 1_i64 << it) else { return };
-        let places: Vec<_> = all.iter().map(|it| start(it)).collect();
-        let branches = branch.is_some();
-        let key = if branches { places.iter().copied().chain([Location::default()]).collect() } else { places };
-        let condition = |it: &&Expr| Condition { at: start(it), is_joined: self.is_joined(it) };
-        let conditions = if is_known { Vec::new() } else { all.iter().map(condition).collect() };
-        let kind = CoverageKind::Decision(Decision { branches, conditions, formula });
+        let conditions: Vec<_> = all.iter().map(|it| self.condition_of(it)).collect();
+        let mut key: Vec<_> = conditions.iter().map(|it| it.at).collect();
+        key.extend(branch.map(|_| Location::default()));
+        let at = branch.map(|it| self.at(it)).or_else(|| key.first().copied()).unwrap_or_default();
+        let conditions = if is_known { Vec::new() } else { conditions };
+        let kind = CoverageKind::Decision(Decision { branches: branch.is_some(), span: branch, conditions, formula });
         let counters = self.decl.counters(rows);
-        let at = branch.unwrap_or_else(|| start(value));
         let Some(field) = self.decl.counter(Sort::Decision, at, key, counters, kind) else { return };
         let kept = self.temporary("row", Type::LINT);
         self.block.push(Statement::assign(kept.clone(), row(&all, value.at), value.at));
         let row = Expr::load(kept, value.at);
         let place = counter_place(field, counters).index(row, COUNT, value.at);
         self.block.push(one_more(place, value.at));
-        all.into_iter().for_each(|it| self.count_within(it));
+        within.into_iter().for_each(|it| self.count_within(it));
     }
 
-    /// Whether it is what an AND_THEN or OR_ELSE gives.
-    fn is_joined(&self, condition: &Expr) -> bool {
-        let ExprKind::Load(Place { root: Root::Local(local), .. }) = condition.kind else { return false };
-        self.locals[local.index()].name == JOINED
+    /// Where a condition is written.
+    fn condition_of(&mut self, value: &Expr) -> Condition {
+        let span = self.written.get(&(value.at, self.role(value))).copied();
+        Condition { at: span.map_or_else(|| start(value), |it| self.at(it)), span }
+    }
+
+    /// Notes where a BOOL is written, if it may be counted.
+    pub(super) fn note_written(&mut self, written: &ast::Expr<'s>, operand: &Operand) {
+        let value = operand.typed().filter(|it| self.is_covered && it.ty == Type::BOOL);
+        if let (Some(value), false) = (value, matches!(written.kind, Ast::Paren(_))) {
+            self.written.insert((value.at, self.role(value)), written.span);
+        }
+    }
+
+    fn role(&self, value: &Expr) -> Role {
+        match &value.kind {
+            ExprKind::Load(Place { root: Root::Local(local), .. }) if self.locals[local.index()].name == JOINED => {
+                Role::Joined
+            }
+            _ if is_decision(value) => Role::Decision,
+            _ => Role::Condition,
+        }
     }
 
     /// Counts the decisions inside of what is no decision itself.

@@ -41,6 +41,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Unary(op, inner) => self.unary(*op, inner, expected, expr.span),
             Ast::Binary(sides, op, op_span) => self.binary(sides, *op, *op_span, expected, expr.span),
         }?;
+        self.note_written(expr, &operand);
         Some(operand.read())
     }
 

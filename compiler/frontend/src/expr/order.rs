@@ -2,6 +2,7 @@
 //! comes out the same where the IR evaluates it stays there; any other is saved where it is written.
 
 use super::checker::Checker;
+use super::coverage::is_decision;
 use staunch_ir::alias::{self, Frame};
 use staunch_ir::faults::{Faults, op_faults};
 use staunch_ir::loops::Known;
@@ -75,9 +76,7 @@ impl Checker<'_, '_> {
         let hoisted = self.block.split_off(mark);
         if !hoisted.is_empty() {
             for expr in done {
-                if self.can_fault(expr) || self.changes(&hoisted, expr) {
-                    self.save("saved", expr);
-                }
+                self.save_parts(expr, &|this, it| this.can_fault(it) || this.changes(&hoisted, it));
             }
         }
         self.block.extend(hoisted);
@@ -242,6 +241,19 @@ impl Checker<'_, '_> {
             self.count_value(&value);
         }
         self.block.push(Statement::assign(place, value, at));
+    }
+
+    /// Saves what is `asked` for: the expression, or, where it is a decision that is counted, those of its conditions, so that it
+    /// stays one decision.
+    pub(crate) fn save_parts(&mut self, expr: &mut Expr, asked: &dyn Fn(&Self, &Expr) -> bool) {
+        if self.is_covered
+            && is_decision(expr)
+            && let ExprKind::Apply(_, operands) = &mut expr.kind
+        {
+            operands.iter_mut().for_each(|it| self.save_parts(it, asked));
+        } else if asked(self, expr) {
+            self.save("saved", expr);
+        }
     }
 
     fn held_can_fault(&self, held: &Held) -> bool {

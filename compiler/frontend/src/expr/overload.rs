@@ -226,9 +226,7 @@ impl<'s> Checker<'_, 's> {
     /// where an operation would take them in another order.
     pub(crate) fn fault_in_order<'e>(&mut self, operands: impl Iterator<Item = &'e mut Expr>) {
         for expr in operands {
-            if self.can_fault(expr) {
-                self.save("saved", expr);
-            }
+            self.save_parts(expr, &Self::can_fault);
         }
     }
 

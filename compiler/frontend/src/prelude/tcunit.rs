@@ -87,3 +87,22 @@ pub(super) const TEXT: &str = concat!(
     real_arrays!("REAL" "LREAL"),
     "END_FUNCTION_BLOCK\nEND_NAMESPACE\n"
 );
+
+/// What writes to a variable that others may only read, by its address.
+macro_rules! write_protected {
+    ($($ty:literal)*) => {
+        concat!($(
+            "FUNCTION WRITE_PROTECTED_", $ty, "\nVAR_INPUT Ptr : POINTER TO ", $ty, "; Value : ", $ty, "; END_VAR\n",
+            "Ptr^ := Value;\nEND_FUNCTION\n",
+        )*)
+    };
+}
+pub(super) use write_protected;
+
+/// All of them, where they are named with the library's name before.
+pub(super) const WRITE_PROTECTED: &str = concat!(
+    "NAMESPACE TcUnit\n",
+    write_protected!("BOOL" "BYTE" "WORD" "DWORD" "LWORD" "SINT" "INT" "DINT" "LINT" "USINT" "UINT" "UDINT" "ULINT"),
+    write_protected!("REAL" "LREAL" "TIME" "DATE" "TIME_OF_DAY" "DATE_AND_TIME" "STRING" "WSTRING"),
+    "END_NAMESPACE\n"
+);

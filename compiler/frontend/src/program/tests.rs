@@ -19,16 +19,28 @@ pub(crate) fn tests(declarations: &mut Declarations<'_>, mut groups: Groups) -> 
             let (title, assertions) = (in_full.unwrap_or_else(|| name.text.to_owned()), Arc::clone(&shared));
             return Test { title, span: name.span, instance, assertions, failed: broken.clone(), suite, fixture };
         }
-        let title = name.text.get(1..name.text.len() - 1).unwrap_or_default().to_owned();
+        let title = title(name.text);
         let failed = format!("{instance}.{FAILED}");
         let in_test = |it: &Option<String>| it.as_ref().map(|it| format!("{instance}.{it}"));
         let own = declarations.tests.assertions.get(&slot).into_iter().flatten().map(|it| Assertion {
             actual: in_test(&it.actual),
             expected: in_test(&it.expected),
+            tolerance: in_test(&it.tolerance),
             message: in_test(&it.message),
             ..it.clone()
         });
         Test { title, span: name.span, assertions: own.collect(), failed, instance, suite: None, fixture: None }
     };
     slots.map(test).collect()
+}
+
+/// What is in the quotes, with `$'`, `$"` and `$$` for what they stand for.
+fn title(written: &str) -> String {
+    let mut characters = written.get(1..written.len() - 1).unwrap_or_default().chars().peekable();
+    let mut title = String::new();
+    while let Some(character) = characters.next() {
+        let escaped = characters.next_if(|it| character == '$' && matches!(it, '\'' | '"' | '$'));
+        title.push(escaped.unwrap_or(character));
+    }
+    title
 }

@@ -8,7 +8,7 @@ use crate::ast::{
 };
 use crate::spelling::Key;
 use crate::{Sources, Span};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The namespace, and the functions in it that change what runs.
 const SPACE: [&str; 2] = ["AxUnit", "Mocking"];
@@ -25,8 +25,14 @@ const MOST: u16 = 255;
 const INSTANCES: [&str; 8] =
     ["__mock_1", "__mock_2", "__mock_3", "__mock_4", "__mock_5", "__mock_6", "__mock_7", "__mock_8"];
 
-/// The numbers by which the library knows what is exchanged and what runs in its place, by the places of their names.
-pub(crate) type Numbers = FxHashMap<(Span, Span), (u16, u16)>;
+/// What is exchanged.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Exchanged {
+    /// The numbers by which the library knows what is exchanged and what runs in its place, by the places of their names.
+    pub numbers: FxHashMap<(Span, Span), (u16, u16)>,
+    /// Where what is added to bodies says that it is written.
+    pub places: FxHashSet<Span>,
+}
 
 /// What a `Mock` names: the last name of what is exchanged, and the path to what runs in its place.
 struct Mock<'s> {
@@ -42,11 +48,11 @@ struct Head<'s> {
 }
 
 /// Puts the mocks before the bodies that they exchange.
-pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) -> Numbers {
-    let mut numbers = Numbers::default();
+pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) -> Exchanged {
+    let mut exchanged = Exchanged::default();
     let mocks = mocks(files, sources);
     if mocks.is_empty() {
-        return numbers;
+        return exchanged;
     }
     let head = |it: &Pou<'s>| Head { name: it.name, kind: it.kind, parameters: parameters(it) };
     let heads: Vec<_> = pous(files).map(head).collect();
@@ -68,7 +74,8 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) -> Number
         }
         let mut first = Vec::new();
         for (((head, mock), instance), which) in fitting.into_iter().zip(INSTANCES).zip(1u16..) {
-            numbers.insert((pou.name.span, head.name.span), (number, which));
+            exchanged.places.insert(mock.at());
+            exchanged.numbers.insert((pou.name.span, head.name.span), (number, which));
             first.push(in_place(pou, mock, instance, (number, which)));
             if pou.kind == PouKind::FunctionBlock {
                 pou.blocks.push(variable(VarKind::Var, instance, mock.mock.clone(), mock.at()));
@@ -80,7 +87,7 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) -> Number
             pou.body.splice(0..0, first);
         }
     }
-    numbers
+    exchanged
 }
 
 /// `AxUnit.Mocking.__exchange_back();`: what runs after a test.

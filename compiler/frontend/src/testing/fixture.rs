@@ -128,6 +128,12 @@ impl<'s> Marks<'s> {
         let is_marked = self.marks.get(&pou.span).into_iter().flatten().any(|it| it.0 == Mark::Fixture);
         has_tests || is_class && is_marked && pou.modifiers.is_abstract.is_none()
     }
+
+    /// Whether it is an ABSTRACT CLASS that is written for fixtures.
+    fn is_base(&self, pou: &Pou<'s>) -> bool {
+        let is_marked = |it: &Pou<'s>| self.marks.contains_key(&it.span) || self.tests.contains_key(&it.span);
+        pou.modifiers.is_abstract.is_some() && (is_marked(pou) || pou.routines.iter().any(is_marked))
+    }
 }
 
 /// The inputs that have the place of a call where it leaves them out, by their names' places.
@@ -156,12 +162,15 @@ pub(crate) fn callers(files: &[File<'_>]) -> FxHashMap<Span, Caller> {
     found
 }
 
-/// Where the names of the fixtures are.
+/// Where the names of the fixtures are, and of the ABSTRACT CLASSes that these extend: they are no program under test.
 pub(crate) fn places(files: &[File<'_>]) -> FxHashSet<Span> {
     let marks = Marks::of(files);
+    if marks.is_empty() {
+        return FxHashSet::default();
+    }
     let items = files.iter().flat_map(|it| &it.items);
     let fixtures = items.filter_map(|it| match it {
-        Item::Pou(pou) if marks.is_fixture(pou) => Some(pou.name.span),
+        Item::Pou(pou) if marks.is_fixture(pou) || marks.is_base(pou) => Some(pou.name.span),
         Item::Pou(_) | Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
     });
     fixtures.collect()

@@ -24,12 +24,16 @@ const NEXT_CYCLE: &str = "__NEXT_CYCLE";
 const FINISHED: &str = "AreAllTestsFinished";
 /// What begins a test.
 const BEGINNINGS: [&str; 2] = ["TEST", "TEST_ORDERED"];
+/// What ends one by its name.
+const END: &str = "TEST_FINISHED_NAMED";
 
 /// A suite, as its source shows it.
 #[derive(Clone, Debug)]
 pub struct Suite {
     /// The titles that are written as texts, and where.
     pub titles: Vec<(String, Span)>,
+    /// The same of those that are said to be finished by their names.
+    pub finished: Vec<(String, Span)>,
     /// Other tests have titles that are known when they run.
     pub is_open: bool,
 }
@@ -166,7 +170,7 @@ fn test<'s>(suite: &Pou<'s>, construction: Option<Box<Construction<'s>>>) -> Pou
 
 /// The titles in the bodies of a suite, those that it inherits too.
 fn titles(suite: &Pou<'_>) -> Suite {
-    let mut found = Suite { titles: Vec::new(), is_open: false };
+    let mut found = Suite { titles: Vec::new(), finished: Vec::new(), is_open: false };
     let own = suite.routines.iter().filter(|it| !it.name.text.starts_with("__"));
     for body in [&suite.body].into_iter().chain(own.map(|it| &it.body)) {
         each_expr(body, &mut |it| {
@@ -175,7 +179,8 @@ fn titles(suite: &Pou<'_>) -> Suite {
                 ExprKind::Name(name) | ExprKind::Member(_, name) => name,
                 _ => return,
             };
-            if !BEGINNINGS.iter().any(|it| Key(it) == Key(name.text)) {
+            let is_end = Key(END) == Key(name.text);
+            if !is_end && !BEGINNINGS.iter().any(|it| Key(it) == Key(name.text)) {
                 return;
             }
             let value = arguments.first().map(|it| &it.kind);
@@ -183,11 +188,12 @@ fn titles(suite: &Pou<'_>) -> Suite {
             match &title.bare().kind {
                 ExprKind::Literal(Literal { value: LiteralValue::String(text), .. }) => {
                     let written = shown(&text.text());
-                    if !found.titles.iter().any(|it| it.0 == written) {
-                        found.titles.push((written, title.span));
+                    let known = if is_end { &mut found.finished } else { &mut found.titles };
+                    if !known.iter().any(|it| it.0 == written) {
+                        known.push((written, title.span));
                     }
                 }
-                _ => found.is_open = true,
+                _ => found.is_open |= !is_end,
             }
         });
     }

@@ -1,5 +1,6 @@
 //! What is counted of the execution of a program, and in which of its globals.
 
+use crate::Span;
 use rustc_hash::FxHashMap;
 use staunch_ir::{FieldId, Location};
 
@@ -30,6 +31,8 @@ pub enum CoverageKind {
 pub struct Decision {
     /// What is executed next depends on it: the condition of an IF, ELSIF, WHILE or UNTIL.
     pub branches: bool,
+    /// What is written, where it branches.
+    pub span: Option<Span>,
     pub conditions: Vec<Condition>,
     pub formula: Formula,
 }
@@ -38,8 +41,8 @@ pub struct Decision {
 pub struct Condition {
     /// Where it begins.
     pub at: Location,
-    /// It is what an AND_THEN or OR_ELSE gives, whose operands begin there, too.
-    pub is_joined: bool,
+    /// What is written, where that is known.
+    pub span: Option<Span>,
 }
 
 /// How the conditions make the decision.
@@ -66,6 +69,16 @@ impl Formula {
             Self::Xor(all) => all.iter().fold(false, |value, it| value ^ it.value(row)),
         }
     }
+}
+
+/// What an expression is in a decision: several may be at one place, which is that of an operator or where they begin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Role {
+    Condition,
+    /// It is made by AND, OR, XOR or NOT.
+    Decision,
+    /// It is what an AND_THEN or OR_ELSE gives.
+    Joined,
 }
 
 /// The points, while bodies are checked.

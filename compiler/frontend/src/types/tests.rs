@@ -2,7 +2,7 @@
 
 use crate::Span;
 use crate::testing::Assertion;
-use crate::testing::exchange::Numbers;
+use crate::testing::exchange::Exchanged;
 use crate::testing::fixture::Caller;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Place, Variable};
@@ -18,14 +18,14 @@ pub(crate) struct Tests {
     pub shared: Vec<Assertion>,
     /// The global that is the number of the first of these that failed.
     pub broken: Option<(String, Place)>,
-    /// Where the names of AxUnit's fixtures are.
+    /// Where the names of AxUnit's fixtures are, those that are ABSTRACT too.
     pub fixtures: FxHashSet<Span>,
     /// The inputs that have the place of a call, by their names' places.
     pub callers: FxHashMap<Span, Caller>,
     /// The FUNCTIONs that some test replaces.
     pub mocks: FxHashMap<usize, FunctionMock>,
     /// What AxUnit's mocks exchange.
-    pub exchanged: Numbers,
+    pub exchanged: Exchanged,
 }
 
 /// Globals: whether a FUNCTION is replaced, the value that it then has, and how often it was called since.

@@ -63,13 +63,13 @@ fn conditions(session: &Session, file: &File, text: &mut String) {
         for (number, condition) in decisions.iter().copied().flatten().enumerate() {
             let (of, number) = if is_clear { (condition.of, condition.number) } else { (all, number) };
             let written = condition.text(session).replace(',', " ");
-            for (sense, taken) in [("t", condition.decided[1]), ("f", condition.decided[0])] {
+            for (sense, taken) in ["t", "f"].into_iter().zip(condition.decides()) {
                 *text += &format!("MCDC:{line},{of},{sense},{taken},{number},{written}\n");
             }
         }
     }
     if !file.conditions.is_empty() {
-        let hit: usize = file.conditions.iter().map(|it| it.decided.iter().filter(|it| **it > 0).count()).sum();
+        let hit: usize = file.conditions.iter().map(|it| it.decides().iter().filter(|it| **it > 0).count()).sum();
         *text += &format!("MCF:{}\nMCH:{hit}\n", file.conditions.len() * 2);
     }
 }

@@ -7,7 +7,7 @@ mod text;
 
 use crate::output;
 use crate::session::Session;
-use staunch_frontend::{CoverageKind, CoveragePoint, Decision};
+use staunch_frontend::{CoverageKind, CoveragePoint, Decision, Span};
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{Location, Program, Type};
 use std::collections::BTreeMap;
@@ -95,6 +95,8 @@ struct File {
 #[derive(Clone, Debug)]
 struct Branch {
     at: Location,
+    /// The condition of an IF or a loop.
+    span: Option<Span>,
     way: Way,
     taken: u64,
     /// How often the place was reached, whichever way it then went.
@@ -125,13 +127,25 @@ struct Condition {
     is_shown: bool,
     /// It is alone, and what is said of it as a branch says it all.
     is_branch: bool,
-    extent: Extent,
+    span: Option<Span>,
 }
 
 impl Condition {
     fn text(&self, session: &Session) -> String {
-        text::condition(session, self.at, self.extent)
+        text_of(session, self.span, self.at, Extent::Condition)
     }
+
+    /// How often it decided when it was TRUE, and when it was FALSE. lcov takes a condition that did both for shown: where the decision
+    /// was the same both times, as that of `a XOR b` may be, the second one counts for nothing.
+    fn decides(&self) -> [u64; 2] {
+        let [no, yes] = self.decided;
+        [yes, if self.is_shown || yes == 0 { no } else { 0 }]
+    }
+}
+
+/// What is written, or as much as its place says of it.
+fn text_of(session: &Session, span: Option<Span>, at: Location, extent: Extent) -> String {
+    span.map_or_else(|| text::condition(session, at, extent), |it| text::written(session, it))
 }
 
 impl Branch {
@@ -220,10 +234,10 @@ impl File {
         match &point.kind {
             CoverageKind::Statement => self.statements.push((at, count)),
             CoverageKind::Arm(case) => {
-                self.branches.push(Branch { at, way: Way::Label(*case), taken: count, reached: count });
+                self.branches.push(Branch { at, span: None, way: Way::Label(*case), taken: count, reached: count });
             }
             CoverageKind::Otherwise => {
-                self.branches.push(Branch { at, way: Way::Otherwise, taken: count, reached: count });
+                self.branches.push(Branch { at, span: None, way: Way::Otherwise, taken: count, reached: count });
             }
             CoverageKind::Decision(decision) => self.decision(at, decision, counts),
         }
@@ -235,7 +249,7 @@ impl File {
         if decision.branches {
             for value in [true, false] {
                 let taken = rows.iter().filter(|it| decision.formula.value(it.0) == value).map(|it| it.1).sum();
-                self.branches.push(Branch { at, way: Way::If(value), taken, reached });
+                self.branches.push(Branch { at, span: decision.span, way: Way::If(value), taken, reached });
             }
         }
         let number_of_decision = self.conditions.last().map_or(0, |it| it.decision + 1);
@@ -260,7 +274,7 @@ impl File {
                 decided,
                 is_shown,
                 is_branch: of == 1 && decision.branches,
-                extent: if condition.is_joined { Extent::Joined } else { Extent::Condition },
+                span: condition.span,
             });
         }
     }
@@ -276,14 +290,14 @@ impl File {
 
     /// What the tests leave open, in the order of the source, each with its place.
     fn open(&self, session: &Session) -> Vec<(Location, String)> {
-        let whole = |at| text::condition(session, at, Extent::Decision);
+        let whole = |it: &Branch| text_of(session, it.span, it.at, Extent::Decision);
         let mut open: Vec<(Location, String)> = Vec::new();
         open.extend(self.statements.iter().filter(|it| it.1 == 0).map(|it| (it.0, "not executed".to_owned())));
         for branch in self.branches.iter().filter(|it| it.is_open()) {
             let what = match branch.way {
-                Way::If(true) => format!("never TRUE: {}", whole(branch.at)),
-                Way::If(false) => format!("never FALSE: {}", whole(branch.at)),
-                Way::Label(_) => format!("never chosen: {}", whole(branch.at)),
+                Way::If(true) => format!("never TRUE: {}", whole(branch)),
+                Way::If(false) => format!("never FALSE: {}", whole(branch)),
+                Way::Label(_) => format!("never chosen: {}", whole(branch)),
                 Way::Otherwise => "never without a label that fits".to_owned(),
             };
             open.push((branch.at, what));
@@ -304,9 +318,9 @@ mod tests {
     fn shown(formula: &Formula, conditions: usize, rows: &[usize]) -> Vec<bool> {
         let mut counts = vec![0; 1 << conditions];
         rows.iter().for_each(|it| counts[*it] += 1);
-        let condition = staunch_frontend::Condition { at: Location::default(), is_joined: false };
+        let condition = staunch_frontend::Condition { at: Location::default(), span: None };
         let conditions = vec![condition; conditions];
-        let decision = Decision { branches: true, conditions, formula: formula.clone() };
+        let decision = Decision { branches: true, span: None, conditions, formula: formula.clone() };
         let mut file = File {
             number: 0,
             path: String::new(),

@@ -1,20 +1,42 @@
 //! The text of a condition, from where it begins.
 
 use crate::session::Session;
+use staunch_frontend::Span;
 use staunch_ir::Location;
 
 /// What ends a decision, and what ends a condition in it, outside of parentheses.
 const ENDS: [&str; 4] = ["THEN", "DO", "OF", "END_REPEAT"];
-const OPERATORS: [&str; 3] = ["AND", "OR", "XOR"];
-const JOINING: [&str; 2] = ["AND_THEN", "OR_ELSE"];
+const OPERATORS: [&str; 5] = ["AND", "OR", "XOR", "AND_THEN", "OR_ELSE"];
 
 /// How far a text goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Extent {
     Decision,
     Condition,
-    /// A condition that an AND_THEN or OR_ELSE gives.
-    Joined,
+}
+
+/// What is written, on one line and without comments.
+pub fn written(session: &Session, span: Span) -> String {
+    let text = without_comments(session.sources.text(span));
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+fn without_comments(text: &str) -> String {
+    let (mut rest, mut out) = (text, String::new());
+    while let Some(character) = rest.chars().next() {
+        let comment = [("//", "\n"), ("(*", "*)"), ("/*", "*/")].into_iter().find(|it| rest.starts_with(it.0));
+        let (kept, from) = match (comment, character) {
+            (Some((_, end)), _) => (" ", rest[2..].find(end).map_or(rest.len(), |it| 2 + it + end.len())),
+            (None, '\'' | '"') => {
+                let end = rest[1..].find(character).map_or(rest.len(), |it| it + 2);
+                (&rest[..end], end)
+            }
+            (None, _) => (&rest[..character.len_utf8()], character.len_utf8()),
+        };
+        out += kept;
+        rest = &rest[from..];
+    }
+    out
 }
 
 /// The condition, or the whole decision, as far as it is on its line.
@@ -26,15 +48,13 @@ pub fn condition(session: &Session, at: Location, extent: Extent) -> String {
 }
 
 fn end(text: &str, extent: Extent) -> usize {
-    let (mut depth, mut quoted, mut word, mut is_joined) = (0, None, 0, false);
+    let (mut depth, mut quoted, mut word) = (0, None, 0);
     for (position, character) in text.char_indices() {
         let is_part = character.is_alphanumeric() || character == '_';
         if !is_part && depth == 0 && quoted.is_none() {
-            let before = &text[word..position];
-            if ends(before, extent, is_joined) {
+            if ends(&text[word..position], extent) {
                 return word;
             }
-            is_joined |= is_one(before, &JOINING);
         }
         match character {
             _ if quoted == Some(character) => quoted = None,
@@ -52,15 +72,13 @@ fn end(text: &str, extent: Extent) -> usize {
             word = position + character.len_utf8();
         }
     }
-    if depth == 0 && ends(&text[word..], extent, is_joined) { word } else { text.len() }
+    if depth == 0 && ends(&text[word..], extent) { word } else { text.len() }
 }
 
-/// Whether an AND_THEN or OR_ELSE was before the word, is said too.
-fn ends(word: &str, extent: Extent, is_joined: bool) -> bool {
+fn ends(word: &str, extent: Extent) -> bool {
     let is_operator = match extent {
         Extent::Decision => false,
-        Extent::Condition => is_one(word, &OPERATORS) || is_one(word, &JOINING),
-        Extent::Joined => is_joined && is_one(word, &OPERATORS),
+        Extent::Condition => is_one(word, &OPERATORS),
     };
     is_one(word, &ENDS) || is_operator
 }
@@ -89,11 +107,9 @@ mod tests {
     }
 
     #[test]
-    fn what_an_and_then_gives_is_one_condition() {
-        let cut = |text: &'static str, extent| text[..end(text, extent)].trim_end();
-        assert_eq!(cut("a AND_THEN b THEN", Extent::Decision), "a AND_THEN b");
-        assert_eq!(cut("a AND_THEN b", Extent::Condition), "a");
-        assert_eq!(cut("a AND_THEN b OR_ELSE c) AND d", Extent::Joined), "a AND_THEN b OR_ELSE c");
-        assert_eq!(cut("a AND b AND_THEN c XOR d;", Extent::Joined), "a AND b AND_THEN c");
+    fn what_is_written_is_one_line_without_comments() {
+        let text = "F(x, (* first, second *)\n  y) // last\n OR s = 'a (* b *)' /* c */ AND d";
+        let line = super::without_comments(text).split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(line, "F(x, y) OR s = 'a (* b *)' AND d");
     }
 }
