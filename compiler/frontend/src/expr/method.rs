@@ -465,18 +465,40 @@ impl<'s> Checker<'_, 's> {
             let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
             return Some(variable.place.ty);
         }
+        if is_super(owner) && self.extends() {
+            return self.type_of_super(name);
+        }
         let ty = self.static_type(owner)?;
         if let Some(ty) = self.type_of_property(ty, name) {
             return Some(ty);
         }
         // An inherited routine means its own class's, where an heir has another of the name.
         if is_this_instance(owner) && self.this_structure.is_none() {
-            let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
-            return scope.get(name.text).map(|it| it.place.ty);
+            return self.type_of_own_variable(name);
         }
         let Type::Struct(id) = ty else { return None };
         let field = self.decl.field_named(id, name.text)?;
         self.decl.program.member(ty, field)
+    }
+
+    /// Whether `SUPER^.name` is a variable that can be called.
+    pub(crate) fn is_instance_of_super(&self, name: ast::Name<'s>) -> bool {
+        let ty = if self.extends() { self.type_of_own_variable(name) } else { None };
+        matches!(ty, Some(Type::Struct(_) | Type::Block(_) | Type::Reference(_)))
+    }
+
+    /// The type of `SUPER^.name`.
+    fn type_of_super(&self, name: ast::Name<'s>) -> Option<Type> {
+        match self.decl.super_routines(self.slot?, Some(name)).and_then(|it| it.getter) {
+            Some((getter, _)) => self.decl.result_type(getter),
+            None => self.type_of_own_variable(name),
+        }
+    }
+
+    /// The type of a variable of the POU around.
+    fn type_of_own_variable(&self, name: ast::Name<'s>) -> Option<Type> {
+        let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
+        scope.get(name.text).map(|it| it.place.ty)
     }
 
     /// `THIS^`, and the standard's `THIS`; the inner `None` says that it was reported.
