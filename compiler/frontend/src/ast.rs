@@ -578,6 +578,11 @@ pub enum StatementKind<'s> {
         value: Expr<'s>,
         set: bool,
     },
+    /// `a S= b R= c`, two or more targets as written, each with whether it is set.
+    SetResetAll {
+        targets: Vec<(Expr<'s>, bool)>,
+        value: Expr<'s>,
+    },
     /// `a REF= b`
     Bind {
         target: Expr<'s>,
@@ -847,6 +852,7 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
         | StatementKind::Assign { .. }
         | StatementKind::AssignAll { .. }
         | StatementKind::SetReset { .. }
+        | StatementKind::SetResetAll { .. }
         | StatementKind::Bind { .. }
         | StatementKind::Attempt { .. }
         | StatementKind::Expr(_)
@@ -877,6 +883,9 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
             }
             StatementKind::AssignAll { targets, value } => {
                 targets.iter().chain([value]).for_each(|it| each_part(it, visit));
+            }
+            StatementKind::SetResetAll { targets, value } => {
+                targets.iter().map(|it| &it.0).chain([value]).for_each(|it| each_part(it, visit));
             }
             StatementKind::Expr(expr) => each_part(expr, visit),
             StatementKind::If { branches, otherwise } => {

@@ -137,6 +137,11 @@ impl Dialect {
         matches!(self, Self::Siemens | Self::Codesys)
     }
 
+    /// `10#15` is a number of base 10.
+    pub const fn has_decimal_bases(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// `CHAR#16#80`, a character by its number.
     pub const fn has_numbered_characters(self) -> bool {
         matches!(self, Self::Siemens)
@@ -229,6 +234,16 @@ impl Dialect {
 
     /// A PROPERTY may be a statement of its own, for what its GET does.
     pub const fn reads_properties_alone(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A REFERENCE TO is bound by `:=` in its declaration, too.
+    pub const fn binds_by_assignment(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A variable alone is a statement that does nothing.
+    pub const fn takes_values_alone(self) -> bool {
         matches!(self, Self::Codesys)
     }
 

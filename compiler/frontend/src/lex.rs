@@ -11,7 +11,7 @@ mod literal;
 pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
-pub use literal::{Fault, date, duration, integer, real, string};
+pub use literal::{DECIMAL, Fault, date, duration, integer, real, string};
 
 use logos::Logos;
 

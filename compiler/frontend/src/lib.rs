@@ -220,7 +220,7 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     files.iter().for_each(|it| log.read_pragmas(it));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
-    start::expand(&mut files);
+    start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     Trees { files, groups, stubs, allowances, has_tests }

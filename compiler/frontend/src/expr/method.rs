@@ -457,13 +457,18 @@ impl<'s> Checker<'_, 's> {
     fn type_of_member(&self, owner: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Type> {
         if let Some(mut path) = owner.path()
             && path.first().is_some_and(|it| self.scope.get(it.text).is_none())
-            && let names::Found::One(Meaning::Declared(Entry::Global(at))) = {
-                path.push(name);
-                self.decl.lookup(&path, Sense::Value)
-            }
         {
-            let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
-            return Some(variable.place.ty);
+            path.push(name);
+            match self.decl.lookup(&path, Sense::Value) {
+                names::Found::One(Meaning::Declared(Entry::Global(at))) => {
+                    let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
+                    return Some(variable.place.ty);
+                }
+                names::Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, name) => {
+                    return Some(self.decl.program_variable(slot)?.place.ty);
+                }
+                names::Found::One(_) | names::Found::Several(_) | names::Found::Nothing => {}
+            }
         }
         if is_super(owner) && self.extends() {
             return self.type_of_super(name);

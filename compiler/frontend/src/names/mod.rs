@@ -327,10 +327,24 @@ impl<'s> Names<'s> {
             };
         }
         let held = self.held(site, space, last, sense).map(Meaning::Declared);
+        // `Plant.Red`: the enumeration needs no name after that of its namespace.
+        let held = held.or_else(|| self.enumerator_in(site, space, last).filter(|_| sense == Sense::Value));
         // `System.Math.Sqrt` is the standard function.
         let is_standard = sense == Sense::Callee && self.spaces[space.0].name.starts_with("System.");
         let standard = || self.library(site.dialect, last, sense).filter(|_| is_standard);
         held.or_else(standard).map_or(Found::Nothing, Found::One)
+    }
+
+    /// The only enumeration in a namespace that has a value of this name, which needs none before it.
+    fn enumerator_in(&self, site: Site, space: SpaceId, name: &str) -> Option<Meaning> {
+        let slots = self.enumerators.get(&Key(name))?;
+        let own = self.spaces[space.0].own.values();
+        let seen = own.filter_map(|it| it.ty.filter(|entry| self.sees(site, space, *it, *entry)));
+        let mut found = seen.filter_map(|it| match it {
+            Entry::Type(slot) if slots.contains(&slot) => Some(Meaning::Enumerator(slot)),
+            Entry::Type(_) | Entry::Pou(_) | Entry::Global(_) => None,
+        });
+        found.next().filter(|_| found.next().is_none())
     }
 
     /// What a namespace holds by itself, as far as a place sees it.
