@@ -32,6 +32,8 @@ pub struct File<'s> {
     pub regions: Vec<Region<'s>>,
     /// Each `{IF …}` that is decided when all declarations are known.
     pub undecided: Vec<Span>,
+    /// The first name that is the word CONFIGURATION, which most dialects reserve.
+    pub reserved: Option<Span>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.

@@ -137,6 +137,11 @@ impl Dialect {
         matches!(self, Self::Siemens | Self::Codesys)
     }
 
+    /// CONFIGURATION may be a name.
+    pub const fn has_configurations_as_names(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// `10#15` is a number of base 10.
     pub const fn has_decimal_bases(self) -> bool {
         matches!(self, Self::Codesys)

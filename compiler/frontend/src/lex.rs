@@ -37,6 +37,8 @@ pub struct Tokens<'s> {
     pub cut: bool,
     /// Each `{IF …}` that is decided when all declarations are known.
     pub undecided: Vec<Span>,
+    /// The first CONFIGURATION that is read as a name.
+    pub reserved: Option<Span>,
 }
 
 /// Reads a text of at most `u32::MAX` bytes.
