@@ -137,6 +137,11 @@ impl Dialect {
         matches!(self, Self::Siemens | Self::Codesys)
     }
 
+    /// What a library declares is in a namespace of its own.
+    pub const fn has_own_libraries(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// CONFIGURATION may be a name.
     pub const fn has_configurations_as_names(self) -> bool {
         matches!(self, Self::Codesys)

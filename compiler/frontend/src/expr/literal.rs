@@ -179,6 +179,11 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
         };
+        self.enumerator_of(slot, ty, name)
+    }
+
+    /// A value of the type in a slot, if that is an enumeration.
+    fn enumerator_of(&mut self, slot: usize, ty: ast::Name<'s>, name: ast::Name<'s>) -> Option<Expr> {
         let resolved = self.decl.named_type(slot)?;
         let Type::Enum(id) = resolved.ty else {
             self.error(Code::E0102, ty.span, format!("`{}` is not an enumeration", ty.text));
@@ -203,20 +208,17 @@ impl<'s> Checker<'_, 's> {
         {
             return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(value), at)));
         }
-        let slots = self.decl.names.enumerators.get(&Key(name.text)).cloned().unwrap_or_default();
+        let slots = self.decl.enumerations_with(name);
         match slots.as_slice() {
             [] => {
                 let (ty, value) = self.decl.names.anonymous_enumerators.get(&Key(name.text)).copied()?;
                 Some(Some(Expr::new(ty, ExprKind::Const(value), at)))
             }
-            [slot] => {
-                let ty = self.decl.types[*slot].decl.name;
-                Some(self.enumerator(&[ty, name]))
-            }
+            [slot] => Some(self.enumerator_of(*slot, self.decl.types[*slot].decl.name, name)),
             several => {
                 let names: Vec<_> = several
                     .iter()
-                    .map(|slot| format!("{}#{}", self.decl.types[*slot].decl.name.text, name.text))
+                    .map(|slot| format!("{}#{}", self.decl.name_in_full(self.decl.types[*slot].decl.name), name.text))
                     .collect();
                 let names: Vec<_> = names.iter().map(String::as_str).collect();
                 self.report(
