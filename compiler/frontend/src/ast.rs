@@ -32,6 +32,8 @@ pub struct File<'s> {
     pub regions: Vec<Region<'s>>,
     /// Each `{IF …}` that is decided when all declarations are known.
     pub undecided: Vec<Span>,
+    /// The first name that is the word CONFIGURATION, which most dialects reserve.
+    pub reserved: Option<Span>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.
@@ -578,6 +580,11 @@ pub enum StatementKind<'s> {
         value: Expr<'s>,
         set: bool,
     },
+    /// `a S= b R= c`, two or more targets as written, each with whether it is set.
+    SetResetAll {
+        targets: Vec<(Expr<'s>, bool)>,
+        value: Expr<'s>,
+    },
     /// `a REF= b`
     Bind {
         target: Expr<'s>,
@@ -851,6 +858,7 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
         | StatementKind::Assign { .. }
         | StatementKind::AssignAll { .. }
         | StatementKind::SetReset { .. }
+        | StatementKind::SetResetAll { .. }
         | StatementKind::Bind { .. }
         | StatementKind::Attempt { .. }
         | StatementKind::Expr(_)
@@ -893,6 +901,9 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
             }
             StatementKind::AssignAll { targets, value } => {
                 targets.iter().chain([value]).for_each(|it| each_part(it, visit));
+            }
+            StatementKind::SetResetAll { targets, value } => {
+                targets.iter().map(|it| &it.0).chain([value]).for_each(|it| each_part(it, visit));
             }
             StatementKind::Expr(expr) => each_part(expr, visit),
             StatementKind::If { branches, otherwise } => {

@@ -154,6 +154,21 @@ impl Dialect {
         matches!(self, Self::Siemens | Self::Codesys)
     }
 
+    /// What a library declares is in a namespace of its own.
+    pub const fn has_own_libraries(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// CONFIGURATION may be a name.
+    pub const fn has_configurations_as_names(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `10#15` is a number of base 10.
+    pub const fn has_decimal_bases(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// `CHAR#16#80`, a character by its number.
     pub const fn has_numbered_characters(self) -> bool {
         matches!(self, Self::Siemens)
@@ -246,6 +261,16 @@ impl Dialect {
 
     /// A PROPERTY may be a statement of its own, for what its GET does.
     pub const fn reads_properties_alone(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A REFERENCE TO is bound by `:=` in its declaration, too.
+    pub const fn binds_by_assignment(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// A variable alone is a statement that does nothing.
+    pub const fn takes_values_alone(self) -> bool {
         matches!(self, Self::Codesys)
     }
 

@@ -11,7 +11,7 @@ mod literal;
 pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
-pub use literal::{Fault, date, duration, integer, real, string};
+pub use literal::{DECIMAL, Fault, date, duration, integer, real, string};
 
 use logos::Logos;
 
@@ -37,6 +37,8 @@ pub struct Tokens<'s> {
     pub cut: bool,
     /// Each `{IF …}` that is decided when all declarations are known.
     pub undecided: Vec<Span>,
+    /// The first CONFIGURATION that is read as a name.
+    pub reserved: Option<Span>,
 }
 
 /// Reads a text of at most `u32::MAX` bytes.

@@ -218,12 +218,21 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     testing::suite::qualify(&mut files);
     log.asked_attributes = declared::asked_attributes(&files, sources);
     files.iter().for_each(|it| log.read_pragmas(it));
+    files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
-    start::expand(&mut files);
+    start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     Trees { files, groups, stubs, allowances, has_tests }
+}
+
+/// Reports a name that is a word of the standard's, in dialects that keep it for that.
+fn report_reserved(span: Span, log: &mut Log<'_>) {
+    if !log.dialect(span).has_configurations_as_names() {
+        let own = log.sources.text(span);
+        log.report(syntax::reserved(span, &own.to_ascii_uppercase(), own));
+    }
 }
 
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.

@@ -101,6 +101,7 @@ impl Mutants<'_> {
             StatementKind::Assign { .. }
             | StatementKind::AssignAll { .. }
             | StatementKind::SetReset { .. }
+            | StatementKind::SetResetAll { .. }
             | StatementKind::Bind { .. }
             | StatementKind::Attempt { .. }
             | StatementKind::Expr(_)

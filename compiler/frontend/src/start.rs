@@ -52,12 +52,12 @@ pub(crate) fn is_initial(name: Name<'_>) -> bool {
 }
 
 /// Adds to all POUs what starts their instances, where a program has any that ask for it, and assigns the initial
-/// values that are addresses.
-pub(crate) fn expand(files: &mut [File<'_>]) {
+/// values that are addresses. `binds` says where `r : REFERENCE TO INT := i` is `REF= i`.
+pub(crate) fn expand(files: &mut [File<'_>], binds: &dyn Fn(Span) -> bool) {
     let mut states = Vec::new();
     let mut of_globals_alone = Addresses::default();
     let mut first = None;
-    let types = Types::of(files);
+    let types = Types::of(files, binds);
     let everywhere = Everywhere::of(files);
     for item in files.iter_mut().flat_map(|it| &mut it.items) {
         match item {

@@ -54,7 +54,7 @@ use crate::{
     source::{Sources, Span},
 };
 
-pub(crate) use diagnostics::controller_service;
+pub(crate) use diagnostics::{controller_service, reserved};
 use parser::{Extra, State};
 pub(crate) use pragma::attribute;
 
@@ -92,7 +92,8 @@ pub fn parse_with<'s>(
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
-    File { items, bindings, pragmas: tokens.pragmas, test_pragmas, regions, undecided: tokens.undecided }
+    let (undecided, reserved) = (tokens.undecided, tokens.reserved);
+    File { items, bindings, pragmas: tokens.pragmas, test_pragmas, regions, undecided, reserved }
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

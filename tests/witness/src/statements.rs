@@ -48,7 +48,11 @@ impl<'a> Machine<'a> {
             StatementKind::AssignAll { .. } => unknown("assignments in a row"),
             StatementKind::Bind { target, value } => self.bind(frame, target, value),
             StatementKind::Attempt { target, value } => self.attempt(frame, target, value),
-            StatementKind::SetReset { target, value, set } => self.set_reset(frame, target, value, *set),
+            StatementKind::SetReset { target, value, set } => self.set_reset(frame, &[(target, *set)], value),
+            StatementKind::SetResetAll { targets, value } => {
+                let targets: Vec<_> = targets.iter().map(|(target, set)| (target, *set)).collect();
+                self.set_reset(frame, &targets, value)
+            }
             StatementKind::Expr(expr) => self.lone_call(frame, expr),
             StatementKind::If { branches, otherwise } => self.choose(frame, branches, otherwise.as_deref()),
             StatementKind::Case { selector, arms, otherwise } => {
@@ -105,17 +109,22 @@ impl<'a> Machine<'a> {
     }
 
     /// `x S= c` sets x while c is TRUE, `x R= c` resets it.
+    /// All targets are found, then the condition is asked, once.
     fn set_reset(
         &mut self,
         frame: &Frame<'a>,
-        target: &'a Expr<'a>,
+        targets: &[(&'a Expr<'a>, bool)],
         value: &'a Expr<'a>,
-        set: bool,
     ) -> Outcome<Flow<'a>> {
-        let place = self.place(frame, target)?;
+        let mut places = Vec::new();
+        for (target, set) in targets {
+            places.push((self.place(frame, target)?, *set));
+        }
         if self.value_as(frame, value, &Type::BOOL)?.as_bool()? {
-            let place = self.checked(place)?;
-            self.write(&place, &Value::bool(set));
+            for (place, set) in places {
+                let place = self.checked(place)?;
+                self.write(&place, &Value::bool(set));
+            }
         }
         Ok(Flow::Next)
     }

@@ -252,6 +252,7 @@ fn has_way_out(statements: &[ast::Statement<'_>], own: bool) -> bool {
         | Ast::Assign { .. }
         | Ast::AssignAll { .. }
         | Ast::SetReset { .. }
+        | Ast::SetResetAll { .. }
         | Ast::Bind { .. }
         | Ast::Attempt { .. }
         | Ast::Expr(_)

@@ -55,7 +55,8 @@ impl<'s> Checker<'_, 's> {
         let made = match &statement.kind {
             Ast_::Assign { target, value } => self.assignment(target, value, span),
             Ast_::AssignAll { targets, value } => self.assign_all(targets, value, span),
-            Ast_::SetReset { target, value, set } => self.set_reset(target, value, *set, span),
+            Ast_::SetReset { target, value, set } => self.set_reset(&[(target, *set)], value, span),
+            Ast_::SetResetAll { targets, value } => self.set_reset_all(targets, value, span),
             Ast_::Bind { target, value } => self.bind_reference(target, value, span),
             Ast_::Attempt { target, value } => self.attempt(target, value, span),
             Ast_::ReturnIf(condition) => self.return_if(condition, span),
@@ -95,6 +96,7 @@ impl<'s> Checker<'_, 's> {
             | Ast_::Assign { .. }
             | Ast_::AssignAll { .. }
             | Ast_::SetReset { .. }
+            | Ast_::SetResetAll { .. }
             | Ast_::Bind { .. }
             | Ast_::Attempt { .. }
             | Ast_::ReturnIf(_)
@@ -189,7 +191,9 @@ impl<'s> Checker<'_, 's> {
             | Type::Enum(_)
             | Type::Array(_) => false,
         };
-        let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
+        let code =
+            if !instance && self.decl.dialect(expr.span).takes_values_alone() { Code::W0518 } else { Code::E0508 };
+        let error = Diagnostic::new(code, expr.span, "this statement has no effect");
         // That nothing calls the PROGRAM is no second mistake.
         for named in self.decl.named_programs.values_mut().filter(|it| it.first == expr.span) {
             named.is_called = true;
@@ -307,33 +311,20 @@ impl<'s> Checker<'_, 's> {
         self.write(place, None, changed, span)
     }
 
-    /// `x S= c` sets, `x R= c` resets, while `c` is TRUE.
-    fn set_reset(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, set: bool, span: Span) -> Option<()> {
-        let found = self.place_or_view(target);
-        let Some(found) = found.filter(|it| self.writable(it, target.span)) else {
+    /// `a S= b R= c`: each target is set or reset while the last operand is TRUE.
+    fn set_reset_all(&mut self, targets: &[(ast::Expr<'s>, bool)], value: &ast::Expr<'s>, span: Span) -> Option<()> {
+        if !self.decl.dialect(span).assigns_in_a_row() {
+            self.report(
+                Diagnostic::new(Code::E0512, span, "`S=` and `R=` have no value, and one variable on their left")
+                    .label("several in a row are an extension of CODESYS")
+                    .help("write one statement for each variable"),
+            );
+            targets.iter().for_each(|it| drop(self.place(&it.0)));
             self.operand(value, None);
             return None;
-        };
-        let ty = self.type_of(&found);
-        if ty != Type::BOOL {
-            let ty = self.type_name(ty);
-            let op = if set { "S=" } else { "R=" };
-            self.error(Code::E0201, target.span, format!("`{op}` needs a BOOL, this is {ty}"));
-            return None;
         }
-        let view = found.view;
-        let mut place = found.place;
-        self.note_assigned(&place, target.span);
-        // The target is found first, as in an assignment, whether it is then written or not.
-        self.freeze(&mut place, &[], true);
-        let condition = self.after_place(&mut place, |this| this.condition(value))?;
-        self.count_condition(value, Some(&condition));
-        let then = self.nested(|this| {
-            let at = this.at(span);
-            this.write(place, view, Expr::bool(set, at), span);
-        });
-        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
-        Some(())
+        let targets: Vec<_> = targets.iter().map(|(target, set)| (target, *set)).collect();
+        self.set_reset(&targets, value, span)
     }
 
     /// What a branch called, taken away so that the next branch, which excludes it, may call it

@@ -57,7 +57,7 @@ impl<'s> Declarations<'s> {
                 ast::Item::Pou(pou) => lists.end(pou.span),
                 ast::Item::Globals(block) => {
                     let last = block.vars.last().map_or(block.span, |it| it.span);
-                    let list = lists.around(block.span).map(|it| self.names.list(it));
+                    let list = lists.around(block.span).map(|it| self.names.list(it, block.span.file));
                     if let Some(list) = list.filter(|_| lists.is_qualified(block.span)) {
                         self.names.qualify(list);
                     }
@@ -200,6 +200,9 @@ impl<'s> Declarations<'s> {
             );
             return;
         }
+        if self.is_program_of_library(entry) {
+            self.names.giving_way.insert(entry);
+        }
         let first = self.clash(space, name.text, entry);
         // A library brings its PROGRAMs along, and names are its user's first.
         if first.is_some() && self.is_program_of_library(entry) {
@@ -222,14 +225,14 @@ impl<'s> Declarations<'s> {
     fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
         // What is named after its list alone is in nobody's way.
         let is_seen = self.names.is_list(space) && !self.names.is_qualified(space);
-        let around = is_seen.then_some(SpaceId::ROOT);
+        let around = is_seen.then(|| self.names.around_list(space));
         let root = around.and_then(|it| self.names.own(it, name)).unwrap_or_default();
         let own = self.names.own(space, name).unwrap_or_default();
-        let lists = if space == SpaceId::ROOT { self.names.in_lists(name) } else { &[] };
-        let known = [own.value, own.ty, root.value, root.ty].into_iter().flatten().chain(lists.iter().map(|it| it.1));
+        let lists = self.names.in_lists(space, name);
+        let mut known = [own.value, own.ty, root.value, root.ty].into_iter().flatten().chain(lists);
         let is_global = |it| matches!(it, Entry::Global(_));
         let may_share = |it| is_global(it) && self.is_type(entry) || is_global(entry) && self.is_type(it);
-        known.into_iter().find(|it| !may_share(*it))
+        known.find(|it| !may_share(*it))
     }
 
     fn report_unknown_namespace(&mut self, path: &[ast::Name<'s>]) {

@@ -33,7 +33,7 @@ mod variable;
 
 use crate::ast::{self, PouKind, VarKind};
 use crate::log::Log;
-use crate::names::{Entry, libraries};
+use crate::names::Entry;
 use crate::spelling::Key;
 use crate::testing;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
@@ -59,7 +59,8 @@ pub(crate) fn declare<'s>(
     for (file, dialect) in declarations.program.files.iter_mut().zip(&declarations.log.dialects) {
         file.system = dialect.family();
     }
-    declarations.names.libraries = libraries(declarations.log.sources);
+    let log = &declarations.log;
+    declarations.names.add_libraries(log.sources, |it| log.dialects.get(it).is_some_and(|it| it.has_own_libraries()));
     declarations.collect_namespaces(files);
     for file in files {
         declarations.collect(file);

@@ -3,7 +3,7 @@
 
 use super::run::{Listing, Run, has_in_outs, listing};
 use crate::dialect::missing;
-use crate::names::{Entry, Found, Meaning, Sense};
+use crate::names::{Entry, Found, Meaning, Sense, SpaceId};
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::types::scope::Variable;
@@ -119,6 +119,14 @@ impl<'s> Declarations<'s> {
         self.named_programs.insert(slot, named);
     }
 
+    /// The name of its instance. One of a library that others have as well is after the library's.
+    fn field_of_program(&self, name: ast::Name<'s>) -> String {
+        match self.names.home(name.span) {
+            SpaceId::ROOT => name.text.to_owned(),
+            _ => self.name_in_full(name).replace('.', "_"),
+        }
+    }
+
     /// The instance among the globals. It starts as what its run holds, to which a VAR_CONFIG gives initial values.
     fn instance_of_program(&mut self, slot: usize, run: Option<usize>) -> Option<Variable<'s>> {
         let state = self.signature(slot)?.state?;
@@ -129,7 +137,7 @@ impl<'s> Declarations<'s> {
         }
         let pou: &'s ast::Pou<'s> = self.pous[slot].ast;
         let field = Field {
-            name: pou.name.text.to_owned(),
+            name: self.field_of_program(pou.name),
             ty: resolved.ty,
             initial: resolved.initial.clone(),
             section: Section::Global,

@@ -264,7 +264,7 @@ impl<'s> Declarations<'s> {
             Some(family) => no_such_block(family, name),
             None => {
                 let families = Family::ALL.map(Family::name);
-                let libraries: Vec<_> = self.names.libraries.iter().map(String::as_str).collect();
+                let libraries: Vec<_> = self.names.libraries().collect();
                 let help = match libraries.as_slice() {
                     [] => format!("the families of blocks are {}", list(&families)),
                     libraries => format!("the project's libraries are {}, by their files or folders", list(libraries)),

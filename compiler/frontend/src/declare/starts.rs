@@ -43,7 +43,7 @@ impl<'s> Declarations<'s> {
             | VarKind::Inst
             | VarKind::Global => return,
         };
-        if let Some(construction) = &decl.construction {
+        if let Some(construction) = decl.construction.as_ref().filter(|_| !self.says_nothing(decl)) {
             let message = format!("a variable of {word} takes no arguments");
             let error = Diagnostic::new(Code::E0304, construction.span, message).label(label);
             self.report(error.help("delete them").fix(construction.span, ""));
@@ -70,9 +70,8 @@ impl<'s> Declarations<'s> {
         if class.is_some_and(|it| self.has_unknown_base(it)) {
             return;
         }
-        let says_nothing = construction.lists.iter().all(Vec::is_empty) && self.calls_start(decl);
         if class.is_none_or(|it| self.initial_methods(it).is_empty()) {
-            if class.is_some() && says_nothing {
+            if (class.is_some() || matches!(ty, Type::Block(_))) && self.says_nothing(decl) {
                 return;
             }
             let label = match class {
@@ -94,9 +93,10 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Whether a declaration is in a dialect that has FB_init.
-    fn calls_start(&self, decl: &VarDecl<'s>) -> bool {
-        self.dialect(decl.span) == Dialect::Codesys
+    /// Whether empty parentheses are after the type, in a dialect that has FB_init.
+    fn says_nothing(&self, decl: &VarDecl<'s>) -> bool {
+        let is_empty = decl.construction.as_ref().is_some_and(|it| it.lists.iter().all(Vec::is_empty));
+        is_empty && self.dialect(decl.span) == Dialect::Codesys
     }
 
     /// Reports FB_init of a PROGRAM, which nothing calls.

@@ -170,6 +170,7 @@ codes! {
     W0515 Warning "a subrange wider than the array that it indexes";
     W0516 Warning "a result that is never assigned";
     W0517 Warning "a name of the standard's is declared again";
+    W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";

@@ -2,10 +2,11 @@
 
 use super::checker::{Checker, Context};
 use super::operand::Operand;
+use super::place::Found;
 use super::unresolved::not_constant;
 use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Expr, ExprKind, Place, Type};
+use staunch_ir::{Expr, ExprKind, Place, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// `(a := b)`, of CODESYS: what `a` is given, where it is written.
@@ -121,6 +122,63 @@ impl<'s> Checker<'_, 's> {
             return Some(read);
         }
         Some(given)
+    }
+
+    /// `x S= c` sets, `x R= c` resets, while `c` is TRUE, which is asked once.
+    pub(crate) fn set_reset(
+        &mut self,
+        targets: &[(&ast::Expr<'s>, bool)],
+        value: &ast::Expr<'s>,
+        span: Span,
+    ) -> Option<()> {
+        let mut latched = Vec::new();
+        let condition = self.latched(targets, value, &mut latched)?;
+        let then = self.nested(|this| {
+            let at = this.at(span);
+            for (found, set) in latched.into_iter().rev() {
+                this.write(found.place, found.view, Expr::bool(set, at), span);
+            }
+        });
+        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+        Some(())
+    }
+
+    /// The condition under which the targets are written. They are found first, from left to right, as in an assignment,
+    /// whether they are then written or not, and kept with the last one first.
+    fn latched(
+        &mut self,
+        targets: &[(&ast::Expr<'s>, bool)],
+        value: &ast::Expr<'s>,
+        latched: &mut Vec<(Found<'s>, bool)>,
+    ) -> Option<Expr> {
+        let [(target, set), rest @ ..] = targets else {
+            let condition = self.condition(value)?;
+            self.count_condition(value, Some(&condition));
+            return Some(condition);
+        };
+        let found = self.place_or_view(target);
+        let Some(mut found) = found.filter(|it| self.writable(it, target.span)) else {
+            rest.iter().for_each(|it| drop(self.place(it.0)));
+            self.operand(value, None);
+            return None;
+        };
+        let ty = self.type_of(&found);
+        if ty != Type::BOOL {
+            let ty = self.type_name(ty);
+            let op = if *set { "S=" } else { "R=" };
+            self.error(Code::E0201, target.span, format!("`{op}` needs a BOOL, this is {ty}"));
+            return None;
+        }
+        self.note_assigned(&found.place, target.span);
+        self.freeze(&mut found.place, &[], true);
+        if latched.len() + rest.len() > 0 {
+            // What is written before it may be what its index asks.
+            self.fix(&mut found.place);
+        }
+        let mut place = found.place.clone();
+        let condition = self.after_place(&mut place, |this| this.latched(rest, value, latched))?;
+        latched.push((Found { place, ..found }, *set));
+        Some(condition)
     }
 
     /// A value for a variable of type `ty`; in `siemens` also an instance of a class that EXTENDS the variable's, as it is.

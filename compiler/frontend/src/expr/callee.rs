@@ -42,6 +42,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Name(_) | Ast::Deref(_) if is_super(callee) => {
                 self.super_callee(None, callee.span).map(Callee::Routine)
             }
+            Ast::Member(base, name) if is_super(base) && self.is_instance_of_super(*name) => Some(Callee::Instance),
             Ast::Member(base, name) if is_super(base) => self.super_callee(Some(*name), base.span).map(Callee::Routine),
             Ast::Name(name) => self.named_callee(*name, arguments),
             Ast::Member(base, name) => match self.qualified_callee(callee) {

@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use super::real::Real;
+use crate::lex::DECIMAL;
 use crate::names::functions::Converted;
 use crate::names::{Found, Meaning, Sense};
 use crate::spelling::Key;
@@ -30,7 +31,10 @@ impl<'s> Checker<'_, 's> {
         let typed = |ty, value| Some(Operand::Typed(Expr::constant(ty, value, at)));
         match value {
             LiteralValue::Bool(it) => typed(Elementary::Bool, Value::Bool(*it)),
-            LiteralValue::Integer { value, .. } => Some(Operand::Integer(i128::from(*value))),
+            LiteralValue::Integer { value, .. } => {
+                self.refuse_decimal_base(span)?;
+                Some(Operand::Integer(i128::from(*value)))
+            }
             LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
             LiteralValue::Time { ty, nanoseconds } => typed(*ty, Value::I64(*nanoseconds)),
             LiteralValue::String(chars) => Some(self.string_literal(chars, span)),
@@ -40,6 +44,22 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// Reports `10#15` in dialects that have no numbers of this base.
+    fn refuse_decimal_base(&mut self, span: Span) -> Option<()> {
+        let text = self.decl.log.sources.text(span);
+        let number = text.find(DECIMAL).filter(|at| !text[..*at].ends_with(|it: char| it.is_ascii_digit()));
+        let Some(number) = number.filter(|_| !self.decl.dialect(span).has_decimal_bases()) else { return Some(()) };
+        let digits = text[number + DECIMAL.len()..].to_owned();
+        let meant = format!("{}{digits}", &text[..number]);
+        self.report(
+            Diagnostic::new(Code::E0005, span, "a number's base is 2, 8 or 16, not 10")
+                .label("CODESYS and TwinCAT have this one, too")
+                .help(format!("write `{meant}`"))
+                .fix(span, meant),
+        );
+        None
     }
 
     fn string_literal(&mut self, chars: &Chars, span: Span) -> Operand {
@@ -159,6 +179,11 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
         };
+        self.enumerator_of(slot, ty, name)
+    }
+
+    /// A value of the type in a slot, if that is an enumeration.
+    fn enumerator_of(&mut self, slot: usize, ty: ast::Name<'s>, name: ast::Name<'s>) -> Option<Expr> {
         let resolved = self.decl.named_type(slot)?;
         let Type::Enum(id) = resolved.ty else {
             self.error(Code::E0102, ty.span, format!("`{}` is not an enumeration", ty.text));
@@ -183,20 +208,17 @@ impl<'s> Checker<'_, 's> {
         {
             return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(value), at)));
         }
-        let slots = self.decl.names.enumerators.get(&Key(name.text)).cloned().unwrap_or_default();
+        let slots = self.decl.enumerations_with(name);
         match slots.as_slice() {
             [] => {
                 let (ty, value) = self.decl.names.anonymous_enumerators.get(&Key(name.text)).copied()?;
                 Some(Some(Expr::new(ty, ExprKind::Const(value), at)))
             }
-            [slot] => {
-                let ty = self.decl.types[*slot].decl.name;
-                Some(self.enumerator(&[ty, name]))
-            }
+            [slot] => Some(self.enumerator_of(*slot, self.decl.types[*slot].decl.name, name)),
             several => {
                 let names: Vec<_> = several
                     .iter()
-                    .map(|slot| format!("{}#{}", self.decl.types[*slot].decl.name.text, name.text))
+                    .map(|slot| format!("{}#{}", self.decl.name_in_full(self.decl.types[*slot].decl.name), name.text))
                     .collect();
                 let names: Vec<_> = names.iter().map(String::as_str).collect();
                 self.report(

@@ -457,13 +457,21 @@ impl<'s> Checker<'_, 's> {
     fn type_of_member(&self, owner: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Type> {
         if let Some(mut path) = owner.path()
             && path.first().is_some_and(|it| self.scope.get(it.text).is_none())
-            && let names::Found::One(Meaning::Declared(Entry::Global(at))) = {
-                path.push(name);
-                self.decl.lookup(&path, Sense::Value)
-            }
         {
-            let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
-            return Some(variable.place.ty);
+            path.push(name);
+            match self.decl.lookup(&path, Sense::Value) {
+                names::Found::One(Meaning::Declared(Entry::Global(at))) => {
+                    let Slot::Done(variable) = &self.decl.globals[at].slot else { return None };
+                    return Some(variable.place.ty);
+                }
+                names::Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, name) => {
+                    return Some(self.decl.program_variable(slot)?.place.ty);
+                }
+                names::Found::One(_) | names::Found::Several(_) | names::Found::Nothing => {}
+            }
+        }
+        if is_super(owner) && self.extends() {
+            return self.type_of_super(name);
         }
         let ty = self.static_type(owner)?;
         if let Some(ty) = self.type_of_property(ty, name) {
@@ -471,12 +479,31 @@ impl<'s> Checker<'_, 's> {
         }
         // An inherited routine means its own class's, where an heir has another of the name.
         if is_this_instance(owner) && self.this_structure.is_none() {
-            let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
-            return scope.get(name.text).map(|it| it.place.ty);
+            return self.type_of_own_variable(name);
         }
         let Type::Struct(id) = ty else { return None };
         let field = self.decl.field_named(id, name.text)?;
         self.decl.program.member(ty, field)
+    }
+
+    /// Whether `SUPER^.name` is a variable that can be called.
+    pub(crate) fn is_instance_of_super(&self, name: ast::Name<'s>) -> bool {
+        let ty = if self.extends() { self.type_of_own_variable(name) } else { None };
+        matches!(ty, Some(Type::Struct(_) | Type::Block(_) | Type::Reference(_)))
+    }
+
+    /// The type of `SUPER^.name`.
+    fn type_of_super(&self, name: ast::Name<'s>) -> Option<Type> {
+        match self.decl.super_routines(self.slot?, Some(name)).and_then(|it| it.getter) {
+            Some((getter, _)) => self.decl.result_type(getter),
+            None => self.type_of_own_variable(name),
+        }
+    }
+
+    /// The type of a variable of the POU around.
+    fn type_of_own_variable(&self, name: ast::Name<'s>) -> Option<Type> {
+        let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
+        scope.get(name.text).map(|it| it.place.ty)
     }
 
     /// `THIS^`, and the standard's `THIS`; the inner `None` says that it was reported.

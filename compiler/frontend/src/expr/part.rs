@@ -32,6 +32,9 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
         let width = match ty {
             Type::Elementary(it) if it.repr().is_integer() && it.is_integral() => it.repr().size() * 8,
+            Type::Enum(id) if self.counts_as_number(id, part.span) => {
+                self.decl.program.enumeration(id).base.repr().size() * 8
+            }
             other => {
                 let found = self.type_name(other);
                 self.report(
@@ -65,7 +68,11 @@ impl<'s> Checker<'_, 's> {
 
     /// The bit that a CONSTANT counts: `word.START`.
     pub(super) fn bit_by_name(&mut self, ty: Type, name: ast::Name<'s>) -> Option<Option<Part>> {
-        let Type::Elementary(whole) = ty.read() else { return None };
+        let whole = match ty.read() {
+            Type::Elementary(it) => it,
+            Type::Enum(id) if self.counts_as_number(id, name.span) => self.decl.program.enumeration(id).base,
+            _ => return None,
+        };
         let counted = whole.is_integral() && self.decl.dialect(name.span).selects_by_constants();
         let value = counted.then(|| self.constant_named(name)).flatten()?;
         let width = i128::from(whole.repr().size()) * 8;

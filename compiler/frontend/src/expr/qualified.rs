@@ -143,7 +143,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
     /// That a name stands for a namespace, where something in it is meant.
     pub(crate) fn only_a_namespace(&self, code: Code, space: SpaceId, full: &str, span: Span) -> Diagnostic {
         let what = match space {
-            SpaceId::ROOT => "a library",
+            it if it == SpaceId::ROOT || self.names.is_of_library(it) => "a library",
             it if self.names.is_list(it) => "a list of global variables",
             _ => "a namespace",
         };
@@ -171,6 +171,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         }
         let what = match space {
             Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),
+            Some(it) if self.names.is_of_library(it) => format!("the library `{full}` has no `{}`", name.text),
             Some(_) | None => format!("the namespace `{full}` has no `{}`", name.text),
         };
         let error = Diagnostic::new(code, name.span, what).label("unknown name");

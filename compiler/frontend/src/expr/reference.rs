@@ -240,7 +240,7 @@ impl<'s> Checker<'_, 's> {
     /// `SIZEOF(x)`, also of a type: a number that takes the type of its place.
     fn size(&mut self, argument: &ast::Expr<'s>) -> Option<Operand> {
         let ty = match self.type_meant(argument) {
-            Some(ty) => ty,
+            Some(ty) => ty?,
             None => {
                 let found = self.place_of_reference(argument)?;
                 self.type_of(&found)
@@ -302,16 +302,23 @@ impl<'s> Checker<'_, 's> {
         });
     }
 
-    /// The type that a name means where no variable has it.
-    fn type_meant(&mut self, expr: &ast::Expr<'s>) -> Option<Type> {
-        let Ast::Name(name) = &expr.kind else { return None };
-        if self.scope.get(name.text).is_some() {
-            return None;
+    /// The type that a name means, with namespaces before it or none, where no variable has it. The inner `None` says that
+    /// its declaration was reported.
+    fn type_meant(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Type>> {
+        let path = expr.path().filter(|it| it.first().is_some_and(|it| self.scope.get(it.text).is_none()))?;
+        if let [name] = path.as_slice()
+            && let Some(elementary) = Elementary::named(name.text)
+        {
+            return Some(Some(Type::Elementary(elementary)));
         }
-        if let Some(elementary) = Elementary::named(name.text) {
-            return Some(Type::Elementary(elementary));
-        }
-        self.decl.type_of_name(*name)
+        let is_value = path.len() > 1
+            && matches!(
+                self.decl.lookup(&path, Sense::Value),
+                Meant::One(Meaning::Declared(Entry::Global(_)) | Meaning::Enumerator(_))
+            );
+        let is_declared = matches!(self.decl.lookup(&path, Sense::Type), Meant::One(Meaning::Declared(Entry::Type(_))));
+        let ty = if is_value { None } else { self.decl.type_of_path(&path) };
+        (ty.is_some() || is_declared && !is_value).then_some(ty)
     }
 
     /// `__ISVALIDREF(r)`: whether it refers to anything.

@@ -142,6 +142,7 @@ fn may_leave(statements: &[ast::Statement<'_>]) -> bool {
             | StatementKind::Assign { .. }
             | StatementKind::AssignAll { .. }
             | StatementKind::SetReset { .. }
+            | StatementKind::SetResetAll { .. }
             | StatementKind::Bind { .. }
             | StatementKind::Attempt { .. }
             | StatementKind::Expr(_)

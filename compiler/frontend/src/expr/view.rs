@@ -178,13 +178,14 @@ impl<'s> Checker<'_, 's> {
 
     /// Gives some bits of an integer another value; the others stay.
     pub(crate) fn merge(&mut self, place: Place, bits: Bits, value: Expr, span: Span) -> Option<()> {
-        let (at, ty) = (self.at(span), place.ty.read());
+        let at = self.at(span);
+        let old = self.as_number(Expr::load(place.clone(), at));
+        let ty = old.ty.read();
         let Type::Elementary(whole) = ty else { return None };
         let unsigned = unsigned(whole.repr().size());
         let mask = unsigned.repr().integer(((1i128 << bits.width) - 1) << bits.shift)?;
         let mask = self.convert(Conversion::Value, ty, Expr::constant(unsigned, mask, at));
         let kept = self.apply(Op::Not, ty, vec![mask.clone()], ty, span)?;
-        let old = Expr::load(place.clone(), at);
         let cleared = self.apply(Op::And, ty, vec![old, kept], ty, span)?;
         let value = self.convert(Conversion::Value, ty, value);
         let shifted = self.shifted(Op::Shl, value, bits.shift, span)?;
@@ -194,13 +195,24 @@ impl<'s> Checker<'_, 's> {
         let is_before = place.is_followed() && self.can_fault(&shifted);
         let parts = if is_before { vec![shifted, cleared] } else { vec![cleared, shifted] };
         let merged = self.apply(Op::Or, ty, parts, ty, span)?;
-        let merged = self.coerce(super::operand::Operand::Typed(merged), place.ty, span)?;
+        let merged = match place.ty.read() {
+            Type::Enum(_) => self.convert(Conversion::Same, place.ty, merged),
+            _ => self.coerce(super::operand::Operand::Typed(merged), place.ty, span)?,
+        };
         self.assign(place, merged, span);
         Some(())
     }
 
+    /// An enumeration's value is its number, another value itself.
+    fn as_number(&mut self, value: Expr) -> Expr {
+        let Type::Enum(id) = value.ty else { return value };
+        let base = Type::Elementary(self.decl.program.enumeration(id).base);
+        self.convert(Conversion::Same, base, value)
+    }
+
     /// Some bits of an integer, as a value of type `ty`.
     pub(crate) fn bits(&mut self, value: Expr, bits: Bits, ty: Type, span: Span) -> Option<Expr> {
+        let value = self.as_number(value);
         let (whole, at) = (value.ty, value.at);
         let shifted = self.shifted(Op::Shr, value, bits.shift, span)?;
         if ty != Type::BOOL {
@@ -222,6 +234,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn unsigned(&mut self, value: Expr) -> Expr {
+        let value = self.as_number(value);
         match value.ty {
             Type::Elementary(it) => {
                 self.convert(Conversion::Value, Type::Elementary(unsigned(it.repr().size())), value)

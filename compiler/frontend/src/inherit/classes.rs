@@ -4,7 +4,7 @@
 use crate::ast::{Bound, Expr, File, Item, Name, Path, Pou, PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
 use crate::dialect::Dialect;
 use crate::log::Log;
-use crate::names::{self, Entry, Found, Meaning, Names, Sense, Site};
+use crate::names::{Entry, Found, Meaning, Names, Sense, Site};
 use crate::source::{Sources, Span};
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
@@ -52,7 +52,9 @@ impl<'s> Classes<'s> {
             sources: log.sources,
             dialects: log.dialects.clone(),
         };
-        classes.names.libraries = names::libraries(log.sources);
+        classes
+            .names
+            .add_libraries(log.sources, |it| classes.dialects.get(it).is_some_and(|it| it.has_own_libraries()));
         classes.collect_namespaces(files);
         for (file, it) in files.iter().enumerate() {
             for (item, it) in it.items.iter().enumerate() {

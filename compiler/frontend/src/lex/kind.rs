@@ -30,6 +30,13 @@ macro_rules! kinds {
             }
         }
 
+        impl Kind {
+            /// Whether it is an operator or punctuation.
+            pub const fn is_sign(self) -> bool {
+                matches!(self, $(Self::$sign)|*)
+            }
+        }
+
         /// As a message says it: `` `;` ``, `` `END_IF` ``, `a name`.
         impl fmt::Display for Kind {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -20,9 +20,14 @@ impl Fault {
     }
 }
 
-/// `1_000`, `16#FF`: the magnitude.
+/// Before a decimal number, in CODESYS.
+pub const DECIMAL: &str = "10#";
+
+/// `1_000`, `16#FF`, and `10#15`: the magnitude.
 pub fn integer(text: &str) -> Result<u64, Fault> {
-    literal::integer(text).map_err(|error| fault(text, 0, error))
+    let first = if text.starts_with(DECIMAL) { DECIMAL.len() } else { 0 };
+    let moved = |error: LiteralError| LiteralError { start: error.start + first, end: error.end + first, ..error };
+    literal::integer(&text[first..]).map_err(|error| fault(text, 0, moved(error)))
 }
 
 /// The digits of a real, without `_`.

@@ -337,6 +337,9 @@ impl Converted {
         match name {
             "STRING" => Some(Self::Text { wide: false }),
             "WSTRING" => Some(Self::Text { wide: true }),
+            "__XWORD" => Some(Self::Elementary(Elementary::Lword)),
+            "__XINT" => Some(Self::Elementary(Elementary::Lint)),
+            "__UXINT" => Some(Self::Elementary(Elementary::Ulint)),
             _ => Elementary::named(name).map(Self::Elementary),
         }
     }

@@ -6,8 +6,9 @@
 //!
 //! **The rule.** A bare name is looked up from the inside out: among the variables of the POU (its scope),
 //! then in each namespace around it; in each first what it holds itself, then what the USING directives
-//! there name: the root uses the lists. Last comes the library: the family that the file's dialect uses, the
-//! blocks that all systems share, the standard functions. The first level that has the name, in the sense
+//! there name: the root uses the lists. In `codesys` each library that a project names is a namespace of its own, as in CODESYS and
+//! TwinCAT: in it is what its files declare; after the root come all libraries. Last comes the library: the family that
+//! the file's dialect uses, the blocks that all systems share, the standard functions. The first level that has the name, in the sense
 //! that its place asks for, decides; where the namespaces that one level uses have several, all are named
 //! and none is chosen. The first name of a path is looked up in the same order, as a namespace or an
 //! enumeration; the others lead on from there, and nowhere else.
@@ -102,6 +103,8 @@ struct Namespace<'s> {
     is_list: bool,
     /// A list whose variables are named after it alone.
     is_qualified: bool,
+    /// What a library of the project holds.
+    is_library: bool,
     own: FxHashMap<Key<'s>, Entries>,
     inner: FxHashMap<Key<'s>, SpaceId>,
 }
@@ -116,8 +119,12 @@ pub(crate) struct Names<'s> {
     pub nameless_lists: FxHashSet<Key<'s>>,
     /// The global variables in lists.
     listed: FxHashMap<Key<'s>, Vec<(SpaceId, Entry)>>,
-    /// The names of libraries, after which what the root holds can be named.
-    pub libraries: Vec<String>,
+    /// The names of libraries, with the namespaces of what they hold: in dialects whose libraries have none, the root.
+    libraries: Vec<(String, SpaceId)>,
+    /// For each file, the namespace of what it declares outside of a NAMESPACE.
+    files: Vec<SpaceId>,
+    /// PROGRAMs of libraries, which give way to other declarations of their names.
+    pub giving_way: FxHashSet<Entry>,
     /// How many global variables have a name.
     globals: FxHashMap<Key<'s>, usize>,
     /// The declarations in which a bare enumerator is named, with their type's slot.
@@ -139,6 +146,8 @@ impl Default for Names<'_> {
             nameless_lists: FxHashSet::default(),
             listed: FxHashMap::default(),
             libraries: Vec::new(),
+            files: Vec::new(),
+            giving_way: FxHashSet::default(),
             globals: FxHashMap::default(),
             enumerators: FxHashMap::default(),
             qualified_enumerators: FxHashMap::default(),
@@ -149,6 +158,7 @@ impl Default for Names<'_> {
 }
 
 /// What the first name of a path leads to.
+#[derive(Clone, Copy)]
 enum Prefix {
     Space(SpaceId),
     Enumeration(usize),
@@ -156,7 +166,7 @@ enum Prefix {
     Globals,
     Family(Family),
     /// What comes with CODESYS, by the name of its library.
-    Library(String),
+    Library,
 }
 
 impl<'s> Names<'s> {
@@ -186,7 +196,51 @@ impl<'s> Names<'s> {
                 return Found::One(Meaning::Declared(entry));
             }
         }
-        self.library(site.dialect, name, sense).map_or(Found::Nothing, Found::One)
+        let of_all = || self.in_libraries(site, name, sense);
+        let found = self.in_lists_of(SpaceId::ROOT, name, sense).or_else(of_all);
+        found.or_else(|| self.library(site.dialect, name, sense).map(Found::One)).unwrap_or(Found::Nothing)
+    }
+
+    /// What the variables of lists mean by their bare names, of those in the root or in a library.
+    fn in_lists_of(&self, around: SpaceId, name: &str, sense: Sense) -> Option<Found> {
+        let own = if sense == Sense::Type { Vec::new() } else { self.listed_in(around, name) };
+        self.one_of(name, &own)
+    }
+
+    /// What the libraries of the project hold. A PROGRAM that one brings along gives way.
+    fn in_libraries(&self, site: Site, name: &str, sense: Sense) -> Option<Found> {
+        let mut found = Vec::new();
+        for space in self.spaces_of_libraries() {
+            match self.held(site, space, name, sense) {
+                Some(entry) => found.push((space, entry)),
+                None if sense == Sense::Type => {}
+                None => found.extend(self.listed_in(space, name)),
+            }
+        }
+        if found.len() > 1 && found.iter().any(|it| !self.giving_way.contains(&it.1)) {
+            found.retain(|it| !self.giving_way.contains(&it.1));
+        }
+        self.one_of(name, &found)
+    }
+
+    /// What one level has: one thing, or several that are named in full.
+    fn one_of(&self, name: &str, found: &[(SpaceId, Entry)]) -> Option<Found> {
+        match found {
+            [] => None,
+            [(_, entry)] => Some(Found::One(Meaning::Declared(*entry))),
+            several => Some(Found::Several(several.iter().map(|(space, _)| self.in_full(*space, name)).collect())),
+        }
+    }
+
+    fn spaces_of_libraries(&self) -> impl Iterator<Item = SpaceId> {
+        // All but the root are made one after the other, before any other namespace.
+        let most = self.libraries.iter().map(|it| it.1.0).max().unwrap_or_default();
+        (1..=most).map(SpaceId)
+    }
+
+    /// Whether a namespace is that of a library of the project.
+    pub fn is_of_library(&self, space: SpaceId) -> bool {
+        self.spaces[space.0].is_library
     }
 
     /// From a namespace outward, as far as `outer`, which is not among them.
@@ -196,16 +250,12 @@ impl<'s> Names<'s> {
 
     /// What the namespaces hold that a region uses.
     fn used(&self, site: Site, region: &Region, name: &str, sense: Sense) -> Option<Found> {
-        let key = Key(name);
         let held = region.uses.iter().filter_map(|space| Some((*space, self.held(site, *space, name, sense)?)));
-        // The root uses the lists.
-        let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && sense != Sense::Type);
-        let found: Vec<_> = held.chain(lists.into_iter().flatten().copied()).collect();
-        match found.as_slice() {
-            [] => None,
-            [(_, entry)] => Some(Found::One(Meaning::Declared(*entry))),
-            several => Some(Found::Several(several.iter().map(|(space, _)| self.in_full(*space, name)).collect())),
-        }
+        // The root uses the lists, and a library its own.
+        let uses_lists = region.outer.is_none() && sense != Sense::Type;
+        let lists = if uses_lists { self.listed_in(region.space, name) } else { Vec::new() };
+        let found: Vec<_> = held.chain(lists).collect();
+        self.one_of(name, &found)
     }
 
     /// Whether a place sees what a namespace holds.
@@ -215,6 +265,10 @@ impl<'s> Names<'s> {
 
     /// Whether a place is in a namespace.
     pub fn is_inside(&self, place: Span, space: SpaceId) -> bool {
+        // Outside of every NAMESPACE a program and its libraries are one.
+        if self.is_of_library(space) {
+            return true;
+        }
         let mut around = self.regions.around(place);
         around.any(|it| self.spaces_to(it.space, None).any(|it| it == space))
     }
@@ -233,7 +287,7 @@ impl<'s> Names<'s> {
     fn of_library(&self, dialect: Dialect, of: &str, name: &str, sense: Sense) -> Option<Meaning> {
         if prelude::unit(name, dialect).is_some_and(|it| library::is_one_of(it.libraries, of)) {
             let own = self.spaces[SpaceId::ROOT.0].own.get(&Key(name)).and_then(|it| it.of(sense));
-            let listed = || self.in_lists(name).first().map(|it| it.1).filter(|_| sense == Sense::Value);
+            let listed = || self.in_lists(SpaceId::ROOT, name).first().copied().filter(|_| sense == Sense::Value);
             return own.or_else(listed).map(Meaning::Declared);
         }
         self.library(dialect, name, sense).filter(|_| library::is_one_of(library::of_built_in(name), of))
@@ -241,11 +295,28 @@ impl<'s> Names<'s> {
 
     /// Whether a name before a point is that of one of CODESYS's or TwinCAT's libraries, and of nothing else.
     pub fn is_library(&self, site: Site, name: &str) -> bool {
-        matches!(self.prefix(site, name), Some(Prefix::Library(_)))
+        matches!(self.prefix(site, name), Some(Prefix::Library))
     }
 
     fn qualified(&self, site: Site, first: &str, between: &[ast::Name<'_>], last: &str, sense: Sense) -> Found {
-        let found = match self.prefix(site, first) {
+        let prefix = self.prefix(site, first);
+        if let Some(Prefix::Space(space)) = prefix
+            && self.is_of_library(space)
+        {
+            let found = self.in_space(site, space, between, last, sense);
+            // What is bundled of a library is there beside its sources.
+            let bundled = || self.of_library(site.dialect, first, last, sense).filter(|_| between.is_empty());
+            let is_one = found != Found::Nothing;
+            return if is_one { found } else { bundled().map_or(Found::Nothing, Found::One) };
+        }
+        if prefix.is_none()
+            && let several @ [_, _, ..] = self.prefixes_in_libraries(first).as_slice()
+        {
+            let path: Vec<_> = between.iter().map(|it| it.text).chain([last]).collect();
+            let full = |space| format!("{}.{}", self.in_full(space, first), path.join("."));
+            return Found::Several(several.iter().map(|it| full(it.0)).collect());
+        }
+        let found = match prefix {
             None if let [inner, rest @ ..] = between
                 && library::leads_to(site.dialect, first, inner.text)
                 && self.is_library(site, inner.text) =>
@@ -253,14 +324,14 @@ impl<'s> Names<'s> {
                 return self.qualified(site, inner.text, rest, last, sense);
             }
             Some(Prefix::Space(space)) => return self.in_space(site, space, between, last, sense),
-            Some(Prefix::Library(of)) if is_list_of_a_library(between) => {
-                self.of_library(site.dialect, &of, last, sense).filter(|_| sense == Sense::Value)
+            Some(Prefix::Library) if is_list_of_a_library(between) => {
+                self.of_library(site.dialect, first, last, sense).filter(|_| sense == Sense::Value)
             }
             _ if !between.is_empty() => None,
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
             Some(Prefix::Globals) => return self.global(site, last),
             Some(Prefix::Family(it)) => in_family(it, last, sense),
-            Some(Prefix::Library(of)) => self.of_library(site.dialect, &of, last, sense),
+            Some(Prefix::Library) => self.of_library(site.dialect, first, last, sense),
             None => None,
         };
         found.map_or(Found::Nothing, Found::One)
@@ -295,14 +366,32 @@ impl<'s> Names<'s> {
         if self.root(name).is_some_and(|it| it.ty.is_some()) {
             return None;
         }
-        if self.libraries.iter().any(|it| it.eq_ignore_ascii_case(name)) {
-            return Some(Prefix::Space(SpaceId::ROOT));
+        if let Some((_, space)) = self.libraries.iter().find(|it| it.0.eq_ignore_ascii_case(name)) {
+            return Some(Prefix::Space(*space));
+        }
+        if let [(_, found)] = self.prefixes_in_libraries(name).as_slice() {
+            return Some(*found);
         }
         if name.eq_ignore_ascii_case("Globals") {
             return Some(Prefix::Globals);
         }
-        let library = library::is_library(site.dialect, name).then(|| Prefix::Library(name.to_owned()));
+        let library = library::is_library(site.dialect, name).then_some(Prefix::Library);
         Family::named(name).map(Prefix::Family).or(library)
+    }
+
+    /// The lists and enumerations of a name that libraries hold.
+    fn prefixes_in_libraries(&self, name: &str) -> Vec<(SpaceId, Prefix)> {
+        let key = Key(name);
+        let in_space = |at: SpaceId| {
+            let space = &self.spaces[at.0];
+            let list = space.inner.get(&key).copied().map(Prefix::Space);
+            let found = list.or_else(|| match space.own.get(&key)?.ty? {
+                Entry::Type(slot) => Some(Prefix::Enumeration(slot)),
+                Entry::Pou(_) | Entry::Global(_) => None,
+            });
+            Some((at, found?))
+        };
+        self.spaces_of_libraries().filter_map(in_space).collect()
     }
 
     /// The namespace of a name in one that a region uses, if it is in one of them alone.
@@ -327,10 +416,24 @@ impl<'s> Names<'s> {
             };
         }
         let held = self.held(site, space, last, sense).map(Meaning::Declared);
+        // `Plant.Red`: the enumeration needs no name after that of its namespace.
+        let held = held.or_else(|| self.enumerator_in(site, space, last).filter(|_| sense == Sense::Value));
         // `System.Math.Sqrt` is the standard function.
         let is_standard = sense == Sense::Callee && self.spaces[space.0].name.starts_with("System.");
         let standard = || self.library(site.dialect, last, sense).filter(|_| is_standard);
         held.or_else(standard).map_or(Found::Nothing, Found::One)
+    }
+
+    /// The only enumeration in a namespace that has a value of this name, which needs none before it.
+    fn enumerator_in(&self, site: Site, space: SpaceId, name: &str) -> Option<Meaning> {
+        let slots = self.enumerators.get(&Key(name))?;
+        let own = self.spaces[space.0].own.values();
+        let seen = own.filter_map(|it| it.ty.filter(|entry| self.sees(site, space, *it, *entry)));
+        let mut found = seen.filter_map(|it| match it {
+            Entry::Type(slot) if slots.contains(&slot) => Some(Meaning::Enumerator(slot)),
+            Entry::Type(_) | Entry::Pou(_) | Entry::Global(_) => None,
+        });
+        found.next().filter(|_| found.next().is_none())
     }
 
     /// What a namespace holds by itself, as far as a place sees it.
@@ -362,10 +465,22 @@ impl<'s> Names<'s> {
 
     /// The name of what a namespace holds, with all namespaces around it.
     pub fn in_full(&self, space: SpaceId, name: &str) -> String {
-        match self.spaces[space.0].name.as_str() {
-            "" => name.to_owned(),
-            around => format!("{around}.{name}"),
+        let around = &self.spaces[space.0];
+        match (around.name.as_str(), around.parent) {
+            ("", _) => name.to_owned(),
+            // What a library has alone needs no name before it.
+            _ if around.is_library && !self.is_elsewhere(space, name) => name.to_owned(),
+            (list, Some(library)) if self.is_of_library(library) => format!("{}.{name}", self.in_full(library, list)),
+            (around, _) => format!("{around}.{name}"),
         }
+    }
+
+    /// Whether the root, or another library, has the name as well.
+    fn is_elsewhere(&self, space: SpaceId, name: &str) -> bool {
+        let key = Key(name);
+        let mut others = self.spaces_of_libraries().chain([SpaceId::ROOT]).filter(|it| *it != space);
+        let has = |it: &Namespace<'s>| it.own.contains_key(&key) || it.inner.contains_key(&key);
+        others.any(|it| has(&self.spaces[it.0])) || self.lists.contains_key(&key)
     }
 
     /// The namespace that a path of names leads to, whether or not the place sees it: what is before the last point.
@@ -386,11 +501,15 @@ impl<'s> Names<'s> {
     /// Adds the regions of the next file, and those of its lists of global variables. Those of the file are
     /// given back in its order.
     pub fn add_file(&mut self, file: &ast::File<'s>, lists: &[(Span, SpaceId)]) -> Vec<RegionId> {
+        let own = self.space_of_file(self.regions.count_files());
         let mut around: Vec<(u32, SpaceId)> = Vec::new();
         let mut stretches = Vec::new();
         for (at, region) in file.regions.iter().enumerate() {
             around.retain(|it| region.span.start < it.0);
-            let outer = around.last().map_or(SpaceId::ROOT, |it| it.1);
+            let outer = around.last().map_or(own, |it| it.1);
+            // A NAMESPACE is in no library: others add to it.
+            let is_outermost = outer == own && !region.path.is_empty();
+            let outer = if is_outermost { SpaceId::ROOT } else { outer };
             let space = region.path.iter().fold(outer, |space, name| self.inner(space, name.text));
             // The region of a file, or of a POU with USING, is of the namespace around it.
             if !region.path.is_empty() {
@@ -437,15 +556,62 @@ impl<'s> Names<'s> {
         inner
     }
 
-    /// The list of global variables with a name, made where there is none.
-    pub fn list(&mut self, name: &'s str) -> SpaceId {
+    /// The list of global variables with a name that a file has, made where there is none.
+    pub fn list(&mut self, name: &'s str, file: u16) -> SpaceId {
         let next = SpaceId(self.spaces.len());
-        let list = *self.lists.entry(Key(name)).or_insert(next);
+        let around = self.space_of_file(usize::from(file));
+        let lists = match around {
+            SpaceId::ROOT => &mut self.lists,
+            library => &mut self.spaces[library.0].inner,
+        };
+        let list = *lists.entry(Key(name)).or_insert(next);
         if list == next {
-            let parent = Some(SpaceId::ROOT);
+            let parent = Some(around);
             self.spaces.push(Namespace { name: name.to_owned(), parent, is_list: true, ..Namespace::default() });
         }
         list
+    }
+
+    fn space_of_file(&self, file: usize) -> SpaceId {
+        self.files.get(file).copied().unwrap_or(SpaceId::ROOT)
+    }
+
+    /// Makes the namespaces of libraries, before any other; `has_own` says which files are in one. A library has the name
+    /// that the project calls it by, too.
+    pub fn add_libraries(&mut self, sources: &Sources, has_own: impl Fn(usize) -> bool) {
+        for (file, source) in sources.files().iter().enumerate() {
+            let space = source.library().map_or(SpaceId::ROOT, |it| self.library_named(it, has_own(file)));
+            self.files.push(space);
+        }
+        for it in sources.references() {
+            let known = self.libraries.iter().find(|known| known.0.eq_ignore_ascii_case(&it.library));
+            let named = known.map(|known| (it.namespace.clone(), known.1));
+            self.libraries.extend(named);
+        }
+    }
+
+    fn library_named(&mut self, name: &str, has_own: bool) -> SpaceId {
+        if let Some((_, space)) = self.libraries.iter().find(|it| it.0.eq_ignore_ascii_case(name)) {
+            return *space;
+        }
+        let mut space = SpaceId::ROOT;
+        if has_own {
+            space = SpaceId(self.spaces.len());
+            let (name, parent) = (name.to_owned(), Some(SpaceId::ROOT));
+            self.spaces.push(Namespace { name, parent, is_library: true, ..Namespace::default() });
+        }
+        self.libraries.push((name.to_owned(), space));
+        space
+    }
+
+    /// The names of the project's libraries.
+    pub fn libraries(&self) -> impl Iterator<Item = &str> {
+        self.libraries.iter().map(|it| it.0.as_str())
+    }
+
+    /// The namespace of the file that a place is in.
+    pub fn home(&self, place: Span) -> SpaceId {
+        self.space_of_file(usize::from(place.file))
     }
 
     pub fn names_in(&self, space: SpaceId) -> impl Iterator<Item = &'s str> {
@@ -487,9 +653,19 @@ impl<'s> Names<'s> {
         self.spaces.iter().find(holds).map(|it| it.name.as_str())
     }
 
-    /// The global variables of that name in the lists whose names are used by themselves.
-    pub fn in_lists<'n>(&'n self, name: &'n str) -> &'n [(SpaceId, Entry)] {
-        self.listed.get(&Key(name)).map_or(&[], Vec::as_slice)
+    /// The global variables of that name in the lists of the root, or of a library, whose names are used by themselves.
+    pub fn in_lists(&self, around: SpaceId, name: &str) -> Vec<Entry> {
+        self.listed_in(around, name).into_iter().map(|it| it.1).collect()
+    }
+
+    fn listed_in(&self, around: SpaceId, name: &str) -> Vec<(SpaceId, Entry)> {
+        let listed = self.listed.get(&Key(name)).into_iter().flatten();
+        listed.copied().filter(|it| self.around_list(it.0) == around).collect()
+    }
+
+    /// What a list is in: the root, or a library.
+    pub fn around_list(&self, list: SpaceId) -> SpaceId {
+        self.spaces[list.0].parent.unwrap_or(SpaceId::ROOT)
     }
 
     /// How many global variables have that name, in all namespaces.
@@ -522,7 +698,7 @@ impl<'s> Names<'s> {
 
     /// The namespaces in full.
     pub fn namespaces(&self) -> impl Iterator<Item = &str> {
-        self.spaces.iter().filter(|it| !it.name.is_empty() && !it.is_list).map(|it| it.name.as_str())
+        self.spaces.iter().filter(|it| !it.name.is_empty() && !it.is_list && !it.is_library).map(|it| it.name.as_str())
     }
 
     /// All names that files declare, but enumerators.
@@ -538,15 +714,6 @@ impl<'s> Names<'s> {
         };
         self.spaces.iter().skip(1).filter_map(held).collect()
     }
-}
-
-/// The names of the libraries that sources are of. One has the name that the project calls it by, too.
-pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
-    let mut libraries: Vec<_> = sources.files().iter().filter_map(|it| it.library()).collect();
-    libraries.dedup();
-    let is_there = |name: &str| libraries.iter().any(|it| it.eq_ignore_ascii_case(name));
-    let called = sources.references().iter().filter(|it| is_there(&it.library)).map(|it| it.namespace.clone());
-    libraries.iter().map(|it| (*it).to_owned()).chain(called).collect()
 }
 
 /// What a family's name before `name` makes of it.

@@ -54,6 +54,10 @@ impl Regions {
         ids
     }
 
+    pub fn count_files(&self) -> usize {
+        self.files.len()
+    }
+
     pub fn use_in(&mut self, region: RegionId, space: SpaceId) {
         let uses = &mut self.all[region.0].uses;
         if !uses.contains(&space) {

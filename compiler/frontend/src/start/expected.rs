@@ -2,6 +2,7 @@
 //! an INTERFACE, or a REFERENCE TO.
 
 use super::varying::Names;
+use crate::Span;
 use crate::ast::{Bound, Expr, ExprKind, File, Item, Name, PouKind, TypeKind, TypeSpec, UnaryOp, VarDecl};
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -15,11 +16,15 @@ pub(super) struct Types<'s> {
     members: FxHashMap<Key<'s>, FxHashMap<Key<'s>, TypeSpec<'s>>>,
     /// Other names of types.
     aliases: FxHashMap<Key<'s>, TypeSpec<'s>>,
+    /// The files in which a REFERENCE TO is bound by `:=`.
+    binding: FxHashSet<u16>,
 }
 
 impl<'s> Types<'s> {
-    pub fn of(files: &[File<'s>]) -> Self {
-        let mut types = Self::default();
+    pub fn of(files: &[File<'s>], binds: &dyn Fn(Span) -> bool) -> Self {
+        let at = |file| Span { file, start: 0, end: 0 };
+        let binding = (0..).take(files.len()).filter(|it| binds(at(*it))).collect();
+        let mut types = Self { binding, ..Self::default() };
         let declared = names(files);
         for item in files.iter().flat_map(|it| &it.items) {
             match item {
@@ -151,7 +156,8 @@ impl<'a, 's> Expected<'a, 's> {
             }
             // As an input of a call; `me : REFERENCE TO Pump := THIS^`.
             TypeKind::Reference { kind: RefKind::ReferenceTo, .. } => {
-                (self.is_member || is_own_instance(value)).then_some(By::Binding)
+                let binds = self.types.binding.contains(&value.span.file) && !is_null(value);
+                (self.is_member || binds || is_own_instance(value)).then_some(By::Binding)
             }
             // `p : POINTER TO Pump := THIS`
             TypeKind::Reference { .. } => is_this(value).then_some(By::Assignment),
@@ -197,6 +203,10 @@ fn is_own_instance(value: &Expr<'_>) -> bool {
 
 fn is_this(value: &Expr<'_>) -> bool {
     matches!(&value.kind, ExprKind::Name(name) if name.text.eq_ignore_ascii_case("THIS"))
+}
+
+fn is_null(value: &Expr<'_>) -> bool {
+    matches!(&value.kind, ExprKind::Name(name) if name.text.eq_ignore_ascii_case("NULL"))
 }
 
 fn is_number(bound: &Expr<'_>) -> bool {

@@ -30,6 +30,7 @@ struct Found<'s> {
 /// Reports such declarations, and makes one name of the tokens of each of them and of their uses.
 pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
     members(tokens);
+    configurations(tokens, text, file);
     let mut found = Found { text, file, ..Found::default() };
     declarations(tokens, &mut found);
     if found.declared.is_empty() {
@@ -49,6 +50,33 @@ fn members(tokens: &mut Tokens<'_>) {
             tokens.kinds[at] = Kind::Name;
         }
     }
+}
+
+/// Words before a name, which are names themselves.
+const BEFORE_NAMES: [&str; 9] =
+    ["METHOD", "PROPERTY", "ACTION", "PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL", "FINAL", "OVERRIDE"];
+
+/// CONFIGURATION is a name where it opens none: no word of TwinCAT. Dialects that reserve it say so later.
+fn configurations(tokens: &mut Tokens<'_>, text: &str, file: u16) {
+    for at in 0..tokens.kinds.len() {
+        if tokens.kinds[at] != Kind::Configuration {
+            continue;
+        }
+        let before = at.checked_sub(1).map(|it| tokens.kinds[it]);
+        let is_declared = at.checked_sub(1).is_some_and(|it| is_before_name(tokens, it, text));
+        let next = tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
+        if is_declared || next.is_sign() || before.is_some_and(wants_operand) {
+            let (start, end) = tokens.places[at];
+            tokens.kinds[at] = Kind::Name;
+            tokens.reserved.get_or_insert(Span { file, start, end });
+        }
+    }
+}
+
+fn is_before_name(tokens: &Tokens<'_>, at: usize, text: &str) -> bool {
+    let (start, end) = tokens.places[at];
+    let word = &text[index(start)..index(end)];
+    tokens.kinds[at] == Kind::Name && BEFORE_NAMES.iter().any(|it| it.eq_ignore_ascii_case(word))
 }
 
 /// Walks over the places where a name is declared.
@@ -96,6 +124,11 @@ fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
             Kind::Semicolon => fresh = !open.is_empty(),
             Kind::Constant | Kind::Retain | Kind::NonRetain | Kind::Persistent => {}
             Kind::Comma => fresh = names,
+            // `PROPERTY Program : INT`
+            Kind::Name if is_before_name(tokens, at, found.text) => {
+                at += declared(tokens, at + 1, found).unwrap_or_default();
+                fresh = false;
+            }
             _ => fresh = false,
         }
         at += 1;

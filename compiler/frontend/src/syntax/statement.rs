@@ -261,7 +261,7 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
     Err(input.problem(Expected::Action))
 }
 
-/// `a S= b`, `a R= b`, `a REF= b`
+/// `a S= b`, `a R= b`, `a S= b R= c`, `a REF= b`
 fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
     if !is_latch(input, 0) {
         return match target.kind {
@@ -271,12 +271,30 @@ fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKi
     }
     let word = input.take();
     input.take();
-    let value = expression(input)?;
-    Ok(match input.text(word) {
-        "S" | "s" => StatementKind::SetReset { target, value, set: true },
-        "R" | "r" => StatementKind::SetReset { target, value, set: false },
-        _ => StatementKind::Bind { target, value },
-    })
+    let mut value = expression(input)?;
+    let Some(set) = sets(input.text(word)) else { return Ok(StatementKind::Bind { target, value }) };
+    if !is_latch(input, 0) {
+        return Ok(StatementKind::SetReset { target, value, set });
+    }
+    let mut targets = vec![(target, set)];
+    while is_latch(input, 0)
+        && let here = input.here()
+        && let Some(set) = sets(input.text(here))
+    {
+        input.take();
+        input.take();
+        targets.push((std::mem::replace(&mut value, expression(input)?), set));
+    }
+    Ok(StatementKind::SetResetAll { targets, value })
+}
+
+/// Whether the word before `=` sets, or resets.
+fn sets(word: &str) -> Option<bool> {
+    match word {
+        "S" | "s" => Some(true),
+        "R" | "r" => Some(false),
+        _ => None,
+    }
 }
 
 /// Something that is neither an assignment nor a call.

@@ -345,7 +345,7 @@ impl<'s> Declarations<'s> {
     pub fn missing_library(&self, namespace: &str) -> Option<String> {
         let mut references = self.log.sources.references().iter();
         let library = &references.find(|it| it.namespace.eq_ignore_ascii_case(namespace))?.library;
-        let is_there = self.names.libraries.iter().any(|it| it.eq_ignore_ascii_case(library));
+        let is_there = self.names.libraries().any(|it| it.eq_ignore_ascii_case(library));
         let path = format!("`libraries = [\"…/{library}.plcproj\"]`");
         (!is_there).then(|| format!("have its sources in staunch.toml, a folder or project named `{library}`: {path}"))
     }
@@ -527,6 +527,15 @@ impl<'s> Declarations<'s> {
             Found::One(Meaning::Declared(entry)) => Some(entry),
             Found::One(_) | Found::Nothing | Found::Several(_) => None,
         }
+    }
+
+    /// The enumerations with a value that a bare name may mean: those of the library around, else the program's, else all.
+    pub fn enumerations_with(&self, name: ast::Name<'_>) -> Vec<usize> {
+        let all = self.names.enumerators.get(&Key(name.text)).map_or(&[][..], Vec::as_slice);
+        let home = |slot: &usize| self.names.home(self.types[*slot].decl.name.span);
+        let levels = [self.names.home(name.span), SpaceId::ROOT];
+        let of_level = |level| all.iter().copied().filter(|it| home(it) == level).collect::<Vec<_>>();
+        levels.into_iter().map(of_level).find(|it| !it.is_empty()).unwrap_or_else(|| all.to_vec())
     }
 
     /// The standard block that a bare name means.

@@ -46,6 +46,11 @@ fn statement(it: &Statement<'_>) -> String {
         StatementKind::SetReset { target, value, set } => {
             format!("{}{}{}", expr(target), if *set { " S=" } else { " R=" }, expr(value))
         }
+        StatementKind::SetResetAll { targets, value } => {
+            let sign = |set: bool| if set { " S=" } else { " R=" };
+            let targets: String = targets.iter().map(|(it, set)| format!("{}{}", expr(it), sign(*set))).collect();
+            format!("{targets}{}", expr(value))
+        }
         StatementKind::Attempt { target, value } => format!("{} ?= {}", expr(target), expr(value)),
         StatementKind::Bind { target, value } => format!("{} REF={}", expr(target), expr(value)),
         StatementKind::Expr(it) => expr(it),

@@ -187,6 +187,10 @@ impl<'t, 'f> Writer<'t, 'f> {
                 targets.iter().for_each(|it| self.expr(it, false));
                 self.expr(value, true);
             }
+            StatementKind::SetResetAll { targets, value } => {
+                targets.iter().for_each(|it| self.expr(&it.0, false));
+                self.expr(value, true);
+            }
             StatementKind::Expr(expr) => match &expr.kind {
                 ExprKind::Call(callee, arguments) => match self.counter(callee) {
                     Some(counter) => self.call(expr.span, callee, counter, arguments),
