@@ -43,6 +43,8 @@ pub(crate) enum Sense {
     /// A variable, or else what may be misused as one.
     Value,
     Callee,
+    /// A callee that is no variable.
+    Function,
 }
 
 /// What a name means.
@@ -85,7 +87,7 @@ pub(crate) struct Entries {
 impl Entries {
     fn of(self, sense: Sense) -> Option<Entry> {
         match sense {
-            Sense::Type => self.ty,
+            Sense::Type | Sense::Function => self.ty,
             Sense::Value | Sense::Callee => self.value.or(self.ty),
         }
     }
@@ -199,7 +201,7 @@ impl<'s> Names<'s> {
         let key = Key(name);
         let held = region.uses.iter().filter_map(|space| Some((*space, self.held(site, *space, name, sense)?)));
         // The root uses the lists.
-        let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && sense != Sense::Type);
+        let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && names_variables(sense));
         let found: Vec<_> = held.chain(lists.into_iter().flatten().copied()).collect();
         match found.as_slice() {
             [] => None,
@@ -223,7 +225,7 @@ impl<'s> Names<'s> {
         match sense {
             Sense::Type => dialect::bare_block(dialect, name).map(Meaning::Block),
             Sense::Value => None,
-            Sense::Callee => is_instruction(dialect.family(), name)
+            Sense::Callee | Sense::Function => is_instruction(dialect.family(), name)
                 .then_some(Meaning::Instruction)
                 .or_else(|| functions::exists_in(name, dialect).then_some(Meaning::Function)),
         }
@@ -258,7 +260,7 @@ impl<'s> Names<'s> {
             }
             _ if !between.is_empty() => None,
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
-            Some(Prefix::Globals) => return self.global(site, last),
+            Some(Prefix::Globals) => return self.global(site, last, sense),
             Some(Prefix::Family(it)) => in_family(it, last, sense),
             Some(Prefix::Library(of)) => self.of_library(site.dialect, &of, last, sense),
             None => None,
@@ -351,9 +353,13 @@ impl<'s> Names<'s> {
         self.spaces[space.0].internal == Some(true)
     }
 
-    /// `Globals.x`
-    fn global(&self, site: Site, name: &str) -> Found {
+    /// `Globals.x`; in `siemens`, whose quotes around a name say that it is no local one, `Globals.f(…)` too.
+    fn global(&self, site: Site, name: &str, sense: Sense) -> Found {
+        let is_called = sense == Sense::Callee && site.dialect == Dialect::Siemens;
         match self.bare(site, name, Sense::Value) {
+            Found::One(Meaning::Declared(Entry::Pou(slot))) if is_called => {
+                Found::One(Meaning::Declared(Entry::Pou(slot)))
+            }
             Found::One(Meaning::Declared(entry @ Entry::Global(_))) => Found::One(Meaning::Declared(entry)),
             Found::Several(names) => Found::Several(names),
             Found::One(_) | Found::Nothing => Found::Nothing,
@@ -549,18 +555,25 @@ pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
     libraries.iter().map(|it| (*it).to_owned()).chain(called).collect()
 }
 
-/// What a family's name before `name` makes of it.
+fn names_variables(sense: Sense) -> bool {
+    match sense {
+        Sense::Value | Sense::Callee => true,
+        Sense::Type | Sense::Function => false,
+    }
+}
+
 /// `Tc2_System.Global_Variables.PI`
 fn is_list_of_a_library(between: &[ast::Name<'_>]) -> bool {
     matches!(between, [it] if it.text.eq_ignore_ascii_case(prelude::LIST))
 }
 
+/// What a family's name before `name` makes of it.
 fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {
     match sense {
         // What all systems share needs no family of its own.
         Sense::Type => dialect::block_in(family, name).or_else(|| dialect::shared_block(name)).map(Meaning::Block),
         Sense::Value => None,
-        Sense::Callee => is_instruction(family, name).then_some(Meaning::Instruction),
+        Sense::Callee | Sense::Function => is_instruction(family, name).then_some(Meaning::Instruction),
     }
 }
 
