@@ -148,7 +148,9 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Paren(inner) => self.lone_expression(inner),
             Ast::Error(_) => drop(self.operand(expr, None)),
-            Ast::Name(_) | Ast::Member(..) if self.is_action_by_name(expr) => self.call_statement(expr, expr, &[]),
+            Ast::Name(_) | Ast::Member(..) if self.is_action_by_name(expr) || self.is_program_by_name(expr) => {
+                self.call_statement(expr, expr, &[]);
+            }
             Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),
             Ast::Assign(..) => drop(self.operand(expr, None)),
             Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Deref(_) | Ast::Unary(..) | Ast::Binary(..) => {
@@ -177,10 +179,6 @@ impl<'s> Checker<'_, 's> {
             | Type::Array(_) => false,
         };
         let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
-        // That nothing calls the PROGRAM is no second mistake.
-        for named in self.decl.named_programs.values_mut().filter(|it| it.first == expr.span) {
-            named.is_called = true;
-        }
         self.report(if instance {
             error
                 .label("the instance is named, but not called")
