@@ -163,7 +163,9 @@ impl<'s> Checker<'_, 's> {
             }
             Ast::Paren(inner) => self.lone_expression(inner),
             Ast::Error(_) => drop(self.operand(expr, None)),
-            Ast::Name(_) | Ast::Member(..) if self.is_action_by_name(expr) => self.call_statement(expr, expr, &[]),
+            Ast::Name(_) | Ast::Member(..) if self.is_action_by_name(expr) || self.is_program_by_name(expr) => {
+                self.call_statement(expr, expr, &[]);
+            }
             Ast::Name(_) | Ast::Member(..) | Ast::Index(..) => self.report_missing_call(expr),
             Ast::Assign(..) => drop(self.operand(expr, None)),
             Ast::Literal(_) | Ast::Address(_) | Ast::Part(..) | Ast::Deref(_) | Ast::Unary(..) | Ast::Binary(..) => {
@@ -191,6 +193,7 @@ impl<'s> Checker<'_, 's> {
             | Type::Enum(_)
             | Type::Array(_) => false,
         };
+<<<<<<< HEAD
         let code =
             if !instance && self.decl.dialect(expr.span).takes_values_alone() { Code::W0518 } else { Code::E0508 };
         let error = Diagnostic::new(code, expr.span, "this statement has no effect");
@@ -198,6 +201,9 @@ impl<'s> Checker<'_, 's> {
         for named in self.decl.named_programs.values_mut().filter(|it| it.first == expr.span) {
             named.is_called = true;
         }
+=======
+        let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
+>>>>>>> wA
         self.report(if instance {
             error
                 .label("the instance is named, but not called")

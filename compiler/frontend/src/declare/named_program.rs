@@ -25,6 +25,16 @@ fn is_nothing(statement: &ast::Statement<'_>) -> bool {
     }
 }
 
+/// Where statements are nothing but names, which calls those of PROGRAMs.
+fn lone_names(statements: &[ast::Statement<'_>], found: &mut FxHashSet<Span>) {
+    for statement in statements {
+        if let ast::StatementKind::Expr(expr) = &statement.kind {
+            found.insert(expr.bare().span);
+        }
+        ast::each_body(statement, &mut |inner| lone_names(inner, found));
+    }
+}
+
 impl<'s> Declarations<'s> {
     /// Gives the PROGRAMs that bodies name their instances, before a body asks what the globals hold.
     pub(super) fn find_named_programs(&mut self, statements: &[Vec<ast::Statement<'s>>], runs: &'s [Run<'s>]) {
@@ -36,7 +46,8 @@ impl<'s> Declarations<'s> {
             let mut found = Vec::new();
             // What reads only a CONSTANT needs no instance, nor what an operator is given that is refused by its name.
             let dialect = self.dialect(self.pous[at].ast.name.span);
-            let mut passed_over = FxHashSet::default();
+            let (mut passed_over, mut alone) = (FxHashSet::default(), FxHashSet::default());
+            lone_names(body, &mut alone);
             ast::each_expr(body, &mut |it| {
                 if let ast::ExprKind::Member(..) = &it.kind
                     && let Some(path) = it.path()
@@ -53,7 +64,7 @@ impl<'s> Declarations<'s> {
                 }
                 let (callee, is_called) = match &it.kind {
                     ast::ExprKind::Call(callee, _) => (callee.bare(), true),
-                    _ => (it, false),
+                    _ => (it, alone.contains(&it.span)),
                 };
                 if let Some(path) = callee.path()
                     && let [first, ..] = path.as_slice()

@@ -90,20 +90,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(slot) = own.filter(|it| !self.is_function_in_method(*it, name)) {
             return Some(Callee::Routine(slot));
         }
-        let found = self.decl.lookup(&[name], Sense::Callee);
-        if let Some(variable) = self.scope.get(name.text) {
-            // A variable that cannot be called does not hide a function of its name.
-            let callable = matches!(variable.place.ty, Type::Block(_) | Type::Struct(_));
-            let function = match &found {
-                Found::One(Meaning::Declared(Entry::Pou(slot))) => {
-                    self.decl.pous[*slot].ast.kind == ast::PouKind::Function
-                }
-                found => matches!(found, Found::One(Meaning::Function | Meaning::Instruction)),
-            };
-            if callable || !function {
-                return Some(Callee::Instance);
-            }
-        }
+        let Some(found) = self.meant_by_call(name) else { return Some(Callee::Instance) };
         if self.scope.is_refused(name.text) {
             return None;
         }
@@ -127,6 +114,32 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// What a bare name before parentheses means, where that is not the variable of this name: one that cannot be called
+    /// does not hide what is.
+    fn meant_by_call(&self, name: ast::Name<'s>) -> Option<Found> {
+        if self.is_callable_variable(name) {
+            return None;
+        }
+        let found = self.decl.lookup(&[name], Sense::Function);
+        let is_function = match &found {
+            Found::One(Meaning::Declared(Entry::Pou(slot))) => self.decl.pous[*slot].ast.kind == ast::PouKind::Function,
+            found => matches!(found, Found::One(Meaning::Function | Meaning::Instruction)),
+        };
+        if is_function {
+            return Some(found);
+        }
+        self.scope.get(name.text).is_none().then(|| self.decl.lookup(&[name], Sense::Callee))
+    }
+
+    /// Whether a bare name is that of a variable that can be called.
+    pub(super) fn is_callable_variable(&self, name: ast::Name<'s>) -> bool {
+        let ty = match self.scope.get(name.text) {
+            Some(variable) => Some(variable.place.ty),
+            None => self.decl.type_of_global(name),
+        };
+        matches!(ty, Some(Type::Block(_) | Type::Struct(_)))
     }
 
     /// Whether a METHOD's own name, in its body, means a FUNCTION: the METHOD itself would be recursion.

@@ -38,12 +38,12 @@ impl<'s> Checker<'_, 's> {
             return false;
         };
         let given: Option<Vec<_>> = arguments.iter().map(positional).collect();
-        let is_function = match self.decl.lookup(&[name], Sense::Callee) {
+        let is_function = match self.decl.lookup(&[name], Sense::Function) {
             Found::One(Meaning::Function) => true,
             Found::Nothing => false,
             Found::One(_) | Found::Several(_) => return false,
         };
-        let is_own = self.scope.get(name.text).is_some() || self.own_routine(name).is_some();
+        let is_own = self.is_callable_variable(name) || self.own_routine(name).is_some();
         if is_own || self.decl.dialect(name.span).family() != Family::Logix {
             return false;
         }

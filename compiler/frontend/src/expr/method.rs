@@ -271,6 +271,17 @@ impl<'s> Checker<'_, 's> {
         Some(self.decl.routines_on(self.static_type(instance)?, name.text)?.called?.0)
     }
 
+    /// Whether an expression is the name of a PROGRAM, which alone calls it.
+    pub(crate) fn is_program_by_name(&self, expr: &ast::Expr<'s>) -> bool {
+        let Some(path) = expr.path().filter(|it| self.scope.get(it[0].text).is_none()) else { return false };
+        match self.decl.lookup(&path, Sense::Value) {
+            names::Found::One(Meaning::Declared(Entry::Pou(slot))) => {
+                path.last().is_some_and(|it| self.is_callable_program(slot, *it))
+            }
+            names::Found::One(_) | names::Found::Several(_) | names::Found::Nothing => false,
+        }
+    }
+
     /// Whether an expression names an ACTION, in dialects that call one by that.
     pub(crate) fn is_action_by_name(&self, expr: &ast::Expr<'s>) -> bool {
         let slot = match &expr.kind {

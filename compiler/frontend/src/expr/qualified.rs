@@ -12,8 +12,12 @@ use staunch_ir::Type;
 use std::rc::Rc;
 
 impl<'s> Checker<'_, 's> {
-    /// Whether a path begins with a variable, or means something that is declared.
+    /// Whether a path begins with a variable, or means something that is declared. A variable that cannot be called
+    /// is none where something is called.
     pub(crate) fn means_anything(&self, path: &[ast::Name<'s>], sense: Sense) -> bool {
+        if let ([name], Sense::Callee) = (path, sense) {
+            return self.is_callable_variable(*name) || self.decl.lookup(path, Sense::Function) != Found::Nothing;
+        }
         path.first().is_some_and(|it| self.scope.get(it.text).is_some())
             || self.decl.lookup(path, sense) != Found::Nothing
     }

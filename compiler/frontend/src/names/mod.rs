@@ -44,6 +44,8 @@ pub(crate) enum Sense {
     /// A variable, or else what may be misused as one.
     Value,
     Callee,
+    /// A callee that is no variable.
+    Function,
 }
 
 /// What a name means.
@@ -86,7 +88,7 @@ pub(crate) struct Entries {
 impl Entries {
     fn of(self, sense: Sense) -> Option<Entry> {
         match sense {
-            Sense::Type => self.ty,
+            Sense::Type | Sense::Function => self.ty,
             Sense::Value | Sense::Callee => self.value.or(self.ty),
         }
     }
@@ -251,11 +253,22 @@ impl<'s> Names<'s> {
     /// What the namespaces hold that a region uses.
     fn used(&self, site: Site, region: &Region, name: &str, sense: Sense) -> Option<Found> {
         let held = region.uses.iter().filter_map(|space| Some((*space, self.held(site, *space, name, sense)?)));
+<<<<<<< HEAD
         // The root uses the lists, and a library its own.
         let uses_lists = region.outer.is_none() && sense != Sense::Type;
         let lists = if uses_lists { self.listed_in(region.space, name) } else { Vec::new() };
         let found: Vec<_> = held.chain(lists).collect();
         self.one_of(name, &found)
+=======
+        // The root uses the lists.
+        let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && names_variables(sense));
+        let found: Vec<_> = held.chain(lists.into_iter().flatten().copied()).collect();
+        match found.as_slice() {
+            [] => None,
+            [(_, entry)] => Some(Found::One(Meaning::Declared(*entry))),
+            several => Some(Found::Several(several.iter().map(|(space, _)| self.in_full(*space, name)).collect())),
+        }
+>>>>>>> wA
     }
 
     /// Whether a place sees what a namespace holds.
@@ -277,7 +290,7 @@ impl<'s> Names<'s> {
         match sense {
             Sense::Type => dialect::bare_block(dialect, name).map(Meaning::Block),
             Sense::Value => None,
-            Sense::Callee => is_instruction(dialect.family(), name)
+            Sense::Callee | Sense::Function => is_instruction(dialect.family(), name)
                 .then_some(Meaning::Instruction)
                 .or_else(|| functions::exists_in(name, dialect).then_some(Meaning::Function)),
         }
@@ -329,7 +342,7 @@ impl<'s> Names<'s> {
             }
             _ if !between.is_empty() => None,
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
-            Some(Prefix::Globals) => return self.global(site, last),
+            Some(Prefix::Globals) => return self.global(site, last, sense),
             Some(Prefix::Family(it)) => in_family(it, last, sense),
             Some(Prefix::Library) => self.of_library(site.dialect, first, last, sense),
             None => None,
@@ -454,9 +467,13 @@ impl<'s> Names<'s> {
         self.spaces[space.0].internal == Some(true)
     }
 
-    /// `Globals.x`
-    fn global(&self, site: Site, name: &str) -> Found {
+    /// `Globals.x`; in `siemens`, whose quotes around a name say that it is no local one, `Globals.f(…)` too.
+    fn global(&self, site: Site, name: &str, sense: Sense) -> Found {
+        let is_called = sense == Sense::Callee && site.dialect == Dialect::Siemens;
         match self.bare(site, name, Sense::Value) {
+            Found::One(Meaning::Declared(Entry::Pou(slot))) if is_called => {
+                Found::One(Meaning::Declared(Entry::Pou(slot)))
+            }
             Found::One(Meaning::Declared(entry @ Entry::Global(_))) => Found::One(Meaning::Declared(entry)),
             Found::Several(names) => Found::Several(names),
             Found::One(_) | Found::Nothing => Found::Nothing,
@@ -716,18 +733,38 @@ impl<'s> Names<'s> {
     }
 }
 
+<<<<<<< HEAD
 /// What a family's name before `name` makes of it.
+=======
+/// The names of the libraries that sources are of. One has the name that the project calls it by, too.
+pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
+    let mut libraries: Vec<_> = sources.files().iter().filter_map(|it| it.library()).collect();
+    libraries.dedup();
+    let is_there = |name: &str| libraries.iter().any(|it| it.eq_ignore_ascii_case(name));
+    let called = sources.references().iter().filter(|it| is_there(&it.library)).map(|it| it.namespace.clone());
+    libraries.iter().map(|it| (*it).to_owned()).chain(called).collect()
+}
+
+fn names_variables(sense: Sense) -> bool {
+    match sense {
+        Sense::Value | Sense::Callee => true,
+        Sense::Type | Sense::Function => false,
+    }
+}
+
+>>>>>>> wA
 /// `Tc2_System.Global_Variables.PI`
 fn is_list_of_a_library(between: &[ast::Name<'_>]) -> bool {
     matches!(between, [it] if it.text.eq_ignore_ascii_case(prelude::LIST))
 }
 
+/// What a family's name before `name` makes of it.
 fn in_family(family: Family, name: &str, sense: Sense) -> Option<Meaning> {
     match sense {
         // What all systems share needs no family of its own.
         Sense::Type => dialect::block_in(family, name).or_else(|| dialect::shared_block(name)).map(Meaning::Block),
         Sense::Value => None,
-        Sense::Callee => is_instruction(family, name).then_some(Meaning::Instruction),
+        Sense::Callee | Sense::Function => is_instruction(family, name).then_some(Meaning::Instruction),
     }
 }
 

@@ -5,7 +5,7 @@ use super::assembly::{Assembly, Chunk, Trouble};
 use core::ops::Range;
 
 /// Sections that declare nothing, and how each ends.
-const SECTIONS: [(&str, &str); 7] = [
+const SECTIONS: [(&str, &str); 8] = [
     ("LIBRARY", "END_LIBRARY"),
     ("VISUALISATION", "END_VISUALISATION"),
     ("PLC_CONFIGURATION", "PLC_END"),
@@ -13,6 +13,7 @@ const SECTIONS: [(&str, &str); 7] = [
     ("RESOURCE", "END_RESOURCE"),
     ("TASKCONFIG", "END_TASKCONFIG"),
     ("_ALARMCONFIG", "_END_ALARMCONFIG"),
+    ("_WORKSPACE", "_END_WORKSPACE"),
 ];
 
 /// What begins a body in another language.

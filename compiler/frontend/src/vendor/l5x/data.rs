@@ -80,6 +80,10 @@ fn read<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, ty: &
                 (Some(written), ..) => number(ty, written),
                 (None, Some(held), _) => return Ok(Value { place, ..held }),
                 (None, None, Some(text)) => characters(file, ty, text),
+                // `<![CDATA[]]>`: the characters of a string that is empty.
+                (None, None, None) if element.attribute(file, "Radix") == Some("ASCII") && bits(ty).is_none() => {
+                    What::Text(Chunk::words("''", &place), true)
+                }
                 (None, None, None) => value.what,
             };
         }

@@ -184,7 +184,9 @@ impl<'a> Writer<'a, '_> {
         if let Some((length, variable)) = self.module(rest) {
             return (length, Piece::Words(variable));
         }
-        if after.starts_with('(') && !scope.tags.contains(&key(name)) {
+        // Tags and instructions have names of their own: a tag is never called.
+        let is_called = after.starts_with('(') && !after.starts_with("(*");
+        if is_called {
             let open = rest.len() - after.len() + 1;
             if let Some(operands) = self.logic.names.instructions.get(&key(name)) {
                 self.depth += 1;
@@ -215,6 +217,9 @@ impl<'a> Writer<'a, '_> {
                 };
                 return (open + close + 1, piece);
             }
+        }
+        if is_called {
+            return (name.len(), Piece::Itself);
         }
         let is_tag = |it: &Scope| it.tags.contains(&key(name));
         let own = || legal(name).filter(|_| is_tag(scope) || is_tag(&self.logic.names.controller));
