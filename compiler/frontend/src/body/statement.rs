@@ -193,17 +193,9 @@ impl<'s> Checker<'_, 's> {
             | Type::Enum(_)
             | Type::Array(_) => false,
         };
-<<<<<<< HEAD
         let code =
             if !instance && self.decl.dialect(expr.span).takes_values_alone() { Code::W0518 } else { Code::E0508 };
         let error = Diagnostic::new(code, expr.span, "this statement has no effect");
-        // That nothing calls the PROGRAM is no second mistake.
-        for named in self.decl.named_programs.values_mut().filter(|it| it.first == expr.span) {
-            named.is_called = true;
-        }
-=======
-        let error = Diagnostic::new(Code::E0508, expr.span, "this statement has no effect");
->>>>>>> wA
         self.report(if instance {
             error
                 .label("the instance is named, but not called")

@@ -253,22 +253,11 @@ impl<'s> Names<'s> {
     /// What the namespaces hold that a region uses.
     fn used(&self, site: Site, region: &Region, name: &str, sense: Sense) -> Option<Found> {
         let held = region.uses.iter().filter_map(|space| Some((*space, self.held(site, *space, name, sense)?)));
-<<<<<<< HEAD
         // The root uses the lists, and a library its own.
-        let uses_lists = region.outer.is_none() && sense != Sense::Type;
+        let uses_lists = region.outer.is_none() && names_variables(sense);
         let lists = if uses_lists { self.listed_in(region.space, name) } else { Vec::new() };
         let found: Vec<_> = held.chain(lists).collect();
         self.one_of(name, &found)
-=======
-        // The root uses the lists.
-        let lists = self.listed.get(&key).filter(|_| region.outer.is_none() && names_variables(sense));
-        let found: Vec<_> = held.chain(lists.into_iter().flatten().copied()).collect();
-        match found.as_slice() {
-            [] => None,
-            [(_, entry)] => Some(Found::One(Meaning::Declared(*entry))),
-            several => Some(Found::Several(several.iter().map(|(space, _)| self.in_full(*space, name)).collect())),
-        }
->>>>>>> wA
     }
 
     /// Whether a place sees what a namespace holds.
@@ -733,18 +722,6 @@ impl<'s> Names<'s> {
     }
 }
 
-<<<<<<< HEAD
-/// What a family's name before `name` makes of it.
-=======
-/// The names of the libraries that sources are of. One has the name that the project calls it by, too.
-pub(crate) fn libraries(sources: &Sources) -> Vec<String> {
-    let mut libraries: Vec<_> = sources.files().iter().filter_map(|it| it.library()).collect();
-    libraries.dedup();
-    let is_there = |name: &str| libraries.iter().any(|it| it.eq_ignore_ascii_case(name));
-    let called = sources.references().iter().filter(|it| is_there(&it.library)).map(|it| it.namespace.clone());
-    libraries.iter().map(|it| (*it).to_owned()).chain(called).collect()
-}
-
 fn names_variables(sense: Sense) -> bool {
     match sense {
         Sense::Value | Sense::Callee => true,
@@ -752,7 +729,6 @@ fn names_variables(sense: Sense) -> bool {
     }
 }
 
->>>>>>> wA
 /// `Tc2_System.Global_Variables.PI`
 fn is_list_of_a_library(between: &[ast::Name<'_>]) -> bool {
     matches!(between, [it] if it.text.eq_ignore_ascii_case(prelude::LIST))

@@ -310,9 +310,9 @@ fn what_is_not_supported_is_named() {
            x := y := 1;
            x REF= y;
            x ?= y;
-           JMP there; // E0090
+           JMP there;
            there:
-           nowhere: // E0090
+           nowhere:
            METHOD PUBLIC m : INT
              VAR x : INT; END_VAR
              x := 1;

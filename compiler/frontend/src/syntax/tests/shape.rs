@@ -84,6 +84,13 @@ fn statement(it: &Statement<'_>) -> String {
         }
         StatementKind::While { condition, body } => format!("while {}{{{}}}", expr(condition), block(body)),
         StatementKind::Repeat { body, until } => format!("repeat{{{}}}until {}", block(body), expr(until)),
+        StatementKind::Try(it) => {
+            let finally = it.finally.as_ref().map_or(String::new(), |it| format!("finally{{{}}}", block(&it.body)));
+            let exception = it.exception.as_ref().map_or(String::new(), expr);
+            format!("try{{{}}}catch({exception}){{{}}}{finally}", block(&it.body), block(&it.handler))
+        }
+        StatementKind::Label(name) => format!("{}:", name.text),
+        StatementKind::Jump(name) => format!("jmp {}", name.text),
         StatementKind::Exit => "exit".into(),
         StatementKind::Continue => "continue".into(),
         StatementKind::Return => "return".into(),
