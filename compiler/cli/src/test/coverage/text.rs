@@ -24,11 +24,10 @@ pub fn written(session: &Session, span: Span) -> String {
 fn without_comments(text: &str) -> String {
     let (mut rest, mut out) = (text, String::new());
     while let Some(character) = rest.chars().next() {
-        let comment = [("//", "\n"), ("(*", "*)"), ("/*", "*/")].into_iter().find(|it| rest.starts_with(it.0));
-        let (kept, from) = match (comment, character) {
-            (Some((_, end)), _) => (" ", rest[2..].find(end).map_or(rest.len(), |it| 2 + it + end.len())),
+        let (kept, from) = match (comment(rest), character) {
+            (Some(end), _) => (" ", end),
             (None, '\'' | '"') => {
-                let end = rest[1..].find(character).map_or(rest.len(), |it| it + 2);
+                let end = end_of_text(rest, character);
                 (&rest[..end], end)
             }
             (None, _) => (&rest[..character.len_utf8()], character.len_utf8()),
@@ -37,6 +36,45 @@ fn without_comments(text: &str) -> String {
         rest = &rest[from..];
     }
     out
+}
+
+/// Where the comment ends that the text begins with.
+fn comment(text: &str) -> Option<usize> {
+    let after = |end: &str| text.find(end).map_or(text.len(), |it| it + end.len());
+    match text.get(..2)? {
+        "//" => Some(after("\n")),
+        "/*" => Some(after("*/")),
+        "(*" => {
+            let mut depth = 0_usize;
+            let mut at = 0;
+            while let Some(two) = text.as_bytes().get(at..at + 2) {
+                let step = match two {
+                    b"(*" => 1,
+                    b"*)" => -1,
+                    _ => 0,
+                };
+                depth = depth.saturating_add_signed(step);
+                at += if step == 0 { 1 } else { 2 };
+                if depth == 0 {
+                    return Some(at);
+                }
+            }
+            Some(text.len())
+        }
+        _ => None,
+    }
+}
+
+/// Where the text in quotes ends that begins here; `$'` does not end it.
+fn end_of_text(text: &str, quote: char) -> usize {
+    let mut is_escaped = false;
+    for (at, character) in text.char_indices().skip(1) {
+        if character == quote && !is_escaped {
+            return at + 1;
+        }
+        is_escaped = character == '$' && !is_escaped;
+    }
+    text.len()
 }
 
 /// The condition, or the whole decision, as far as it is on its line.
@@ -51,10 +89,8 @@ fn end(text: &str, extent: Extent) -> usize {
     let (mut depth, mut quoted, mut word) = (0, None, 0);
     for (position, character) in text.char_indices() {
         let is_part = character.is_alphanumeric() || character == '_';
-        if !is_part && depth == 0 && quoted.is_none() {
-            if ends(&text[word..position], extent) {
-                return word;
-            }
+        if !is_part && depth == 0 && quoted.is_none() && ends(&text[word..position], extent) {
+            return word;
         }
         match character {
             _ if quoted == Some(character) => quoted = None,
@@ -108,8 +144,8 @@ mod tests {
 
     #[test]
     fn what_is_written_is_one_line_without_comments() {
-        let text = "F(x, (* first, second *)\n  y) // last\n OR s = 'a (* b *)' /* c */ AND d";
+        let text = "F(x, (* first (* nested *), second *)\n  y) // last\n OR s = 'a$' (* b *)' /* c */ AND d (*";
         let line = super::without_comments(text).split_whitespace().collect::<Vec<_>>().join(" ");
-        assert_eq!(line, "F(x, y) OR s = 'a (* b *)' AND d");
+        assert_eq!(line, "F(x, y) OR s = 'a$' (* b *)' AND d");
     }
 }
