@@ -289,6 +289,16 @@ impl Dialect {
         matches!(self, Self::Siemens)
     }
 
+    /// An input of a FUNCTION_BLOCK's type takes an instance of what EXTENDS it.
+    pub const fn gives_bases_of_instances(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// THIS is there in a PROGRAM, too, for its variables and METHODs.
+    pub const fn has_this_of_programs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// `TO_USINT('0')` is the number of the character.
     pub const fn takes_literals_as_characters(self) -> bool {
         matches!(self, Self::Siemens)

@@ -62,7 +62,10 @@ impl<'s> Checker<'_, 's> {
 
     fn handed_on(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Expr> {
         let (Type::Struct(id), at) = (ty, self.at(expr.span)) else { return None };
-        let pointer = self.reference_to(expr, RefKind::PointerTo)?;
+        let pointer = match self.pointer_to_counter(expr) {
+            Some(pointer) => pointer?,
+            None => self.reference_to(expr, RefKind::PointerTo)?,
+        };
         let Type::Reference(reference) = pointer.ty else { return None };
         let target = self.decl.program.target(reference);
         let class = ExprKind::Const(Value::U32(class_of(target).0));

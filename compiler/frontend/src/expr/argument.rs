@@ -141,10 +141,30 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn value_part(&mut self, parts: &mut Parts, expr: &ast::Expr<'s>, ty: Type, role: Role) -> Option<()> {
         let value = self.after_parts(&mut parts.written, |this| match this.any_value(expr, ty) {
             Some(any) => any,
-            None => this.value(expr, ty),
+            None => this.given_value(expr, ty),
         })?;
         parts.push(Held::Value(value), role, expr.span);
         Some(())
+    }
+
+    /// What an input of type `ty` gets. In CODESYS an instance of what EXTENDS the input's class gives a copy of what it has of
+    /// that.
+    fn given_value(&mut self, expr: &ast::Expr<'s>, ty: Type) -> Option<Expr> {
+        let is_instance = matches!(ty, Type::Struct(it) if self.decl.is_instance(it));
+        if !is_instance || !self.decl.dialect(expr.span).gives_bases_of_instances() {
+            return self.value(expr, ty);
+        }
+        match self.operand(expr, Some(ty))? {
+            Operand::Typed(heir) if heir.ty != ty && self.decl.extends(heir.ty, ty) => {
+                if let Some(message) = self.decl.held_not_copied(ty, expr.span) {
+                    return self.instance_is_no_value(&heir, message, expr.span);
+                }
+                let base = self.temporary("base", ty);
+                self.assign_part(&base, heir);
+                Some(Expr::load(base, self.at(expr.span)))
+            }
+            operand => self.coerce(operand, ty, expr.span),
+        }
     }
 
     /// Evaluates the next part, what an output is connected with.

@@ -199,7 +199,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What an instance has of its base goes to an instance of that.
-    fn assign_part(&mut self, place: &Place, mut given: Expr) {
+    pub(super) fn assign_part(&mut self, place: &Place, mut given: Expr) {
         if !matches!(given.kind, ExprKind::Load(_)) {
             self.save("assigned", &mut given);
         }

@@ -214,7 +214,14 @@ impl<'s> Checker<'_, 's> {
                 let (ty, value) = self.decl.names.anonymous_enumerators.get(&Key(name.text)).copied()?;
                 Some(Some(Expr::new(ty, ExprKind::Const(value), at)))
             }
-            [slot] => Some(self.enumerator_of(*slot, self.decl.types[*slot].decl.name, name)),
+            [slot] => {
+                let ty = self.decl.types[*slot].decl.name;
+                let space = self.decl.names.space_of(ty.span);
+                Some(match self.decl.names.is_of_library(space) {
+                    true => self.enumerator_of(*slot, ty, name),
+                    false => self.enumerator(&[ty, name]),
+                })
+            }
             several => {
                 let names: Vec<_> = several
                     .iter()

@@ -201,8 +201,8 @@ impl<'s> Checker<'_, 's> {
         }
         self.may_call(slot, name)?;
         let found = match instance {
-            Some(instance) => self.place(instance)?,
-            None => self.this()?,
+            Some(instance) if !self.is_this_of_program(instance) => self.place(instance)?,
+            Some(_) | None => self.this()?,
         };
         if !(arguments.is_empty() && self.is_constant_in_out(&found)) {
             self.may_call_method(&found, span)?;
@@ -303,7 +303,10 @@ impl<'s> Checker<'_, 's> {
         let found = match &callee.bare().kind {
             Ast::Member(instance, name) => {
                 self.may_call(slot, *name)?;
-                if is_super(instance) { self.this()? } else { self.place(instance)? }
+                match is_super(instance) || self.is_this_of_program(instance) {
+                    true => self.this()?,
+                    false => self.place(instance)?,
+                }
             }
             Ast::Name(name) => {
                 self.may_call(slot, *name)?;
@@ -515,6 +518,15 @@ impl<'s> Checker<'_, 's> {
     fn type_of_own_variable(&self, name: ast::Name<'s>) -> Option<Type> {
         let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
         scope.get(name.text).map(|it| it.place.ty)
+    }
+
+    /// Whether an expression is `THIS^` in a PROGRAM, which has variables and METHODs, and no address.
+    pub(crate) fn is_this_of_program(&self, expr: &ast::Expr<'s>) -> bool {
+        let is_program = || self.slot.is_some_and(|it| self.decl.pous[self.decl.home(it)].ast.kind == PouKind::Program);
+        is_this_instance(expr)
+            && self.this_structure.is_none()
+            && self.decl.dialect(expr.span).has_this_of_programs()
+            && is_program()
     }
 
     /// `THIS^`, and the standard's `THIS`; the inner `None` says that it was reported.

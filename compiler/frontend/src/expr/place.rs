@@ -330,7 +330,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(variable) = self.global_of_namespace(whole) {
             return variable.map(|it| self.found(&it, name));
         }
-        if is_super(base) && self.extends() {
+        if is_super(base) && self.extends() || self.is_this_of_program(base) {
             return self.member_of_this(name);
         }
         if let Some(this) = self.this_of(base) {

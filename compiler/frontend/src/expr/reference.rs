@@ -179,16 +179,36 @@ impl<'s> Checker<'_, 's> {
         }
         // Whoever has its address may read and write it.
         self.note_passed(&found.place, expr.span, expr.span);
+        self.reference_at(found.place, target, (kind, bytes), expr.span)
+    }
+
+    /// A reference to what lies so many bytes after where a place begins.
+    fn reference_at(&mut self, place: Place, target: Type, (kind, bytes): (RefKind, u64), span: Span) -> Option<Expr> {
         let ty = self.decl.reference_type(kind, target);
-        let at = self.at(expr.span);
-        let place = found.place;
+        let at = self.at(span);
         let mut reference = Expr::new(ty, ExprKind::AddressOf(Box::new(place.clone())), at);
         if bytes > 0 {
             let bytes = Operand::Integer(bytes.into());
-            reference = self.advance(Operand::Typed(reference), (bytes, expr.span), BinaryOp::Add, expr.span)?;
+            reference = self.advance(Operand::Typed(reference), (bytes, span), BinaryOp::Add, span)?;
         }
         self.decl.note_referred(place.ty);
-        Some(self.told_apart(reference, &place, expr.span))
+        Some(self.told_apart(reference, &place, span))
+    }
+
+    /// A pointer to a copy of a loop's counter, which has no address of its own; `None` of anything else.
+    pub(crate) fn pointer_to_counter(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Expr>> {
+        let Ast::Name(name) = &expr.bare().kind else { return None };
+        if self.counters.is_empty() || self.static_type(expr).is_none() || self.own_routine(*name).is_some() {
+            return None;
+        }
+        let found = self.place_or_view(expr)?;
+        if !self.is_counter(&found.place, found.view) {
+            return None;
+        }
+        let value = self.read(found.place, found.view, expr.span)?;
+        let (ty, copy) = (value.ty, self.temporary("counter", value.ty));
+        self.assign(copy.clone(), value, expr.span);
+        Some(self.reference_at(copy, ty, (RefKind::PointerTo, 0), expr.span))
     }
 
     /// Whether it is a BIT that starts where another member does, as in a UNION: CODESYS gives it the address of its byte.

@@ -65,7 +65,9 @@ fn configurations(tokens: &mut Tokens<'_>, text: &str, file: u16) {
         let before = at.checked_sub(1).map(|it| tokens.kinds[it]);
         let is_declared = at.checked_sub(1).is_some_and(|it| is_before_name(tokens, it, text));
         let next = tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
-        if is_declared || next.is_sign() || before.is_some_and(wants_operand) {
+        // `Configuration REF= x`
+        let is_latched = next == Kind::Name && tokens.kinds.get(at + 2) == Some(&Kind::Equal);
+        if is_declared || is_latched || next.is_sign() || before.is_some_and(wants_operand) {
             let (start, end) = tokens.places[at];
             tokens.kinds[at] = Kind::Name;
             tokens.reserved.get_or_insert(Span { file, start, end });
