@@ -2,6 +2,7 @@
 //! before them, with what TIA Portal notes between their heads and their declarations. Data blocks become variables.
 
 mod counter;
+mod counter_use;
 mod data_block;
 mod token;
 mod words;

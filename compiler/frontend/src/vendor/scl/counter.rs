@@ -1,7 +1,5 @@
-//! The counters of S7, whose rules Siemens' documents leave open: each is refused, with what a family has in its place.
+//! The counters of S7, and what a family has in their place.
 
-use super::{Kind, Scl};
-use core::ops::Range;
 use rustc_hash::FxHashMap;
 use staunch_runtime::{BLOCKS, Family};
 
@@ -17,8 +15,9 @@ const DATA: [(&str, &str); 8] = [
     ("IEC_ULCOUNTER", "_ULINT"),
 ];
 
-const INSTRUCTIONS: [&str; 3] = ["CTUD", "CTU", "CTD"];
+pub const INSTRUCTIONS: [&str; 3] = ["CTUD", "CTU", "CTD"];
 
+/// Names of counters in lower case, and the instruction that a call of each names.
 pub type Counters = FxHashMap<String, Option<&'static str>>;
 
 /// Whether a type, in capitals, is one of the system's counters.
@@ -33,68 +32,20 @@ fn instruction(ty: &str) -> Option<(&'static str, &str)> {
 }
 
 /// What the standard's family has in place of a counter with the numbers of a type, `CTD_INT`.
-fn of_the_standard(name: &str, numbers: &str) -> String {
+fn with_numbers(name: &str, numbers: &str) -> String {
     let full = format!("{name}{numbers}");
     let has = BLOCKS.iter().any(|it| it.family == Family::Iec && it.is_named(&full));
     format!("IEC.{}", if has { full.as_str() } else { name })
 }
 
-impl Scl<'_> {
-    /// Refuses a counter; what is read in its place.
-    pub fn refuse_counter(&mut self, ty: &str, name: &str, place: Range<usize>) -> String {
-        let upper = ty.to_ascii_uppercase();
-        let family = match instruction(&upper) {
-            Some((counter, numbers)) => of_the_standard(counter, numbers),
-            None => {
-                let numbers = DATA.iter().find(|it| it.0 == upper).map_or("", |it| it.1);
-                of_the_standard(
-                    self.counters.get(&name.to_ascii_lowercase()).copied().flatten().unwrap_or("CTUD"),
-                    numbers,
-                )
-            }
-        };
-        let message = format!("`{ty}` is a counter of S7, whose rules its documents leave open");
-        self.refuse(place, message);
-        self.out.help(format!("a family says what its counters do: write `{family}` in Structured Text"));
-        family
-    }
-
-    /// What is declared as a counter, in lower case, and the instruction that a call of it names, `"C".CTU(…)`.
-    pub fn called_counters(&self) -> Counters {
-        let mut counters = Counters::default();
-        for at in 1..self.tokens.len() {
-            if !is_one(&self.text(at).to_ascii_uppercase()) {
-                continue;
-            }
-            let head = if self.text(at - 1) == ":" { Some(self.declared_before(at)) } else { self.data_block_of(at) };
-            if let Some(head) = head {
-                counters.insert(self.name(head).to_ascii_lowercase(), None);
-            }
+/// What the standard's family has in place of a counter's type; `called` is the instruction that a call of it names.
+pub fn of_the_standard(ty: &str, called: Option<&str>) -> String {
+    let upper = ty.to_ascii_uppercase();
+    match instruction(&upper) {
+        Some((counter, numbers)) => with_numbers(counter, numbers),
+        None => {
+            let numbers = DATA.iter().find(|it| it.0 == upper).map_or("", |it| it.1);
+            with_numbers(called.unwrap_or("CTUD"), numbers)
         }
-        for at in 2..self.tokens.len() {
-            let is_call = self.text(at - 1) == "." && self.text(at + 1) == "(";
-            if let Some(instruction) = INSTRUCTIONS.into_iter().find(|it| is_call && self.is(at, it))
-                && let Some(called) = counters.get_mut(&self.name(at - 2).to_ascii_lowercase())
-            {
-                *called = Some(instruction);
-            }
-        }
-        counters
-    }
-
-    /// What the type at a token is declared for; pragmas may be between.
-    pub fn declared_before(&self, at: usize) -> usize {
-        let before = (0..at.saturating_sub(1)).rev();
-        before.into_iter().find(|it| self.token(*it).is_some_and(|it| it.kind != Kind::Pragma)).unwrap_or_default()
-    }
-
-    /// The name of the data block whose type is at a token.
-    fn data_block_of(&self, at: usize) -> Option<usize> {
-        if self.text(at + 1) == ":" {
-            return None;
-        }
-        let is_head = |it: &usize| self.is(*it, "DATA_BLOCK");
-        let is_past = |it: &usize| self.is(*it, "BEGIN") || self.text(*it) == ";";
-        (0..at).rev().take_while(|it| !is_past(it)).find(is_head).map(|it| it + 1)
     }
 }
