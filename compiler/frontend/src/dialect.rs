@@ -318,6 +318,19 @@ impl Dialect {
         }
     }
 
+    /// A text in single quotes after `WSTRING#` or `WCHAR#` is wide.
+    pub const fn has_wide_texts_in_single_quotes(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
+    /// How a text of code units is written, with what is between its quotes.
+    pub fn wide_text(self, ty: &str, inner: &str) -> String {
+        match self.has_wide_texts_in_single_quotes() {
+            true => format!("`{ty}#'{inner}'`"),
+            false => format!("in double quotes: `\"{inner}\"`"),
+        }
+    }
+
     /// A PROGRAM may be called by its name, and its variables read.
     pub const fn calls_programs(self) -> bool {
         matches!(self, Self::Codesys)

@@ -337,7 +337,7 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::Open => (Code::E0003, "close it where it ends"),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or have its own system convert it"),
     };
-    Diagnostic::new(code, span, problem.message.clone()).help(help)
+    Diagnostic::new(code, span, problem.message.clone()).help(problem.help.as_deref().unwrap_or(help))
 }
 
 /// Of what is refused by its name, what programs name in many places.

@@ -126,7 +126,7 @@ impl Source {
     /// The Structured Text in a file, also in one of another system's.
     pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
         let file = Self::decoded(path, bytes);
-        match vendor::read(&file.text) {
+        match vendor::read_named(&file.path, &file.text) {
             Some(Assembly { text, pieces, problems }) => {
                 let path = file.path.clone();
                 Self {
@@ -150,7 +150,7 @@ impl Source {
     fn without_text(path: impl Into<String>, trouble: vendor::Trouble, message: impl Fn(&str) -> String) -> Self {
         let file = Self::new(path, "\n".to_owned());
         let message = message(file.path.rsplit(['/', '\\']).next().unwrap_or_default());
-        let problems = vec![Problem { at: 0, trouble, message }];
+        let problems = vec![Problem { at: 0, trouble, message, help: None }];
         let pieces = vec![Piece { start: 0, at: 0, end: 1, verbatim: true }];
         Self { origin: Some(Box::new(Origin { file: file.clone(), pieces, piece: Hint::default(), problems })), ..file }
     }

@@ -35,6 +35,12 @@ pub fn read(text: &str) -> Option<Assembly> {
     }
 }
 
+/// The Structured Text in a file that is called as a source of SCL is.
+pub fn read_named(path: &str, text: &str) -> Option<Assembly> {
+    let extension = path.rsplit_once('.').map_or("", |it| it.1);
+    read(text).or_else(|| extension.eq_ignore_ascii_case("scl").then(|| scl::read(text)))
+}
+
 /// Whether a file of this name is one of TwinCAT 3's.
 pub fn is_twincat_name(path: &str) -> bool {
     let extension = path.rsplit_once('.').map_or("", |it| it.1);

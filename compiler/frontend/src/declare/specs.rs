@@ -213,6 +213,9 @@ impl<'s> Declarations<'s> {
         }
         self.table.index.references.clear();
         for (at, reference) in self.program.references.iter().enumerate() {
+            if self.table.unknown_references.contains(&ReferenceId::next(at)) {
+                continue;
+            }
             self.table.index.references.entry(*reference).or_insert(ReferenceId::next(at));
         }
     }

@@ -318,10 +318,6 @@ impl<'s> Checker<'_, 's> {
             sizes.push(array.high - array.low + 1);
             ty = array.element;
         }
-        if self.decl.program.is_open(found.place.ty) {
-            self.decl.not_supported(source.span, "`SIZE` of an ARRAY[*]");
-            return None;
-        }
         if sizes.is_empty() || ty == Type::BOOL {
             let ty = self.type_name(found.place.ty);
             self.report(
@@ -331,7 +327,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let number = self.typed(dimension, Some(Type::DINT))?;
-        let Some(size) = constant_of(&number).and_then(|it| sizes.get(usize::try_from(it).ok()?)).copied() else {
+        let position = constant_of(&number).and_then(|it| usize::try_from(it).ok());
+        let Some((position, size)) = position.and_then(|it| Some((it, *sizes.get(it)?))) else {
             let message = "the dimension is a constant, and one of the array's";
             let (count, last) = (sizes.len(), sizes.len() - 1);
             let label = if count == 1 { "it has 1, which is 0".to_owned() } else { format!("it has 0 to {last}") };
@@ -343,9 +340,26 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         self.note_assigned(&target_place.place, target.span);
-        let value = self.coerce(Operand::Integer(i128::from(size)), target_place.place.ty, target.span)?;
+        let size = match self.open_size(&found.place, position, span) {
+            Some(size) => Operand::Typed(size),
+            None => Operand::Integer(i128::from(size)),
+        };
+        let value = self.coerce(size, target_place.place.ty, target.span)?;
         self.assign(target_place.place, value, span);
         Some(())
+    }
+
+    /// The elements in a dimension of an `ARRAY[*]`, which each call gives its bounds.
+    fn open_size(&mut self, place: &Place, position: usize, span: Span) -> Option<Expr> {
+        if !self.decl.program.is_open(place.ty) {
+            return None;
+        }
+        let (low, high) = *self.bounds_of(place.root).get(place.projections.len() + position)?;
+        let at = self.at(span);
+        let bound = |it| Expr::load(Place::local(it, Type::DINT), at);
+        let one = Expr::constant(Elementary::Dint, Value::I32(1), at);
+        let distance = Expr::apply(Op::Sub, Type::DINT, vec![bound(high), bound(low)], at);
+        Some(Expr::apply(Op::Add, Type::DINT, vec![distance, one], at))
     }
 
     /// The three operands of one of them, by position or by name.

@@ -377,7 +377,9 @@ impl<'s> Checker<'_, 's> {
                 let units = if text.is_wide() { "UTF-16 code units" } else { "bytes" };
                 error.label(format!("this has {} {units}, and a {name} is one", text.len()))
             }
-            ExprKind::Text(_) if ty == Elementary::Wchar => error.label("a WCHAR is written in double quotes: `\"A\"`"),
+            ExprKind::Text(_) if ty == Elementary::Wchar => {
+                error.label(format!("a WCHAR is written {}", self.decl.dialect(span).wide_text("WCHAR", "A")))
+            }
             ExprKind::Text(_) => error.label("a CHAR is written in single quotes: `'A'`"),
             _ => {
                 let text = self.decl.log.sources.text(span).to_owned();
@@ -397,7 +399,9 @@ impl<'s> Checker<'_, 's> {
         let text = self.decl.log.sources.text(span).to_owned();
         let error = Diagnostic::new(Code::E0201, span, format!("expected {to}, found {found}"));
         self.report(match value.kind {
-            ExprKind::Text(_) if to.wide => error.label("a WSTRING is written in double quotes: `\"…\"`"),
+            ExprKind::Text(_) if to.wide => {
+                error.label(format!("a WSTRING is written {}", self.decl.dialect(span).wide_text("WSTRING", "…")))
+            }
             ExprKind::Text(_) => error.label("a STRING is written in single quotes: `'…'`"),
             _ => error.label(format!("this is {found}")).help(format!("write `{from}_TO_{}({text})`", to.word())),
         });

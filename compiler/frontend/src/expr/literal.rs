@@ -86,7 +86,11 @@ impl<'s> Checker<'_, 's> {
         is_negative: bool,
         span: Span,
     ) -> Option<Expr> {
-        let ty = match self.literal_type(prefix, value)? {
+        let named = self.literal_type(prefix, value)?;
+        if self.has_other_quotes(prefix, value, span) {
+            return None;
+        }
+        let ty = match named {
             Converted::Elementary(ty) => ty,
             Converted::Text { wide } => return self.string_of_kind(value, wide, span),
         };
@@ -106,6 +110,28 @@ impl<'s> Checker<'_, 's> {
             number if is_negative => self.literal_as(&number.negated(), ty, span),
             number => self.literal_as(&number, ty, span),
         }
+    }
+
+    /// Reports `WSTRING#'abc'` where a dialect has only `WSTRING#"abc"`; whether it is that.
+    fn has_other_quotes(&mut self, prefix: ast::Name<'s>, value: &LiteralValue<'s>, span: Span) -> bool {
+        let is_single = self.decl.log.sources.text(span).ends_with('\'');
+        let LiteralValue::String(chars) = value else { return false };
+        if !(chars.is_wide() && is_single) || self.decl.dialect(span).has_wide_texts_in_single_quotes() {
+            return false;
+        }
+        let ty = prefix.text.to_ascii_uppercase();
+        let text = self.decl.log.sources.text(span);
+        let inner = text.split_once('\'').and_then(|it| it.1.strip_suffix('\''));
+        let error = Diagnostic::new(Code::E0201, span, format!("a text in single quotes is no {ty}"))
+            .label(format!("a {ty} is written in double quotes"));
+        self.report(match inner.filter(|it| !it.contains('"')) {
+            Some(inner) => {
+                let meant = format!("{}#\"{inner}\"", prefix.text);
+                error.help(format!("write `{meant}`")).fix(span, meant)
+            }
+            None => error,
+        });
+        true
     }
 
     /// `CHAR#16#80`, in dialects that have it.

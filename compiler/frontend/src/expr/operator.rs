@@ -180,7 +180,9 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::String(x)), Some(Type::String(y))) if x.wide != y.wide => {
                 let narrow = if x.wide { b } else { a };
                 Some(match narrow.strip_prefix('\'').and_then(|it| it.strip_suffix('\'')) {
-                    Some(text) => format!("a WSTRING is written in double quotes: `\"{text}\"`"),
+                    Some(text) => {
+                        format!("a WSTRING is written {}", self.decl.dialect(sides.left).wide_text("WSTRING", text))
+                    }
                     None => format!("write `STRING_TO_WSTRING({narrow})`"),
                 })
             }

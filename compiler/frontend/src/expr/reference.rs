@@ -510,6 +510,10 @@ impl<'s> Checker<'_, 's> {
     /// access is checked in any case.
     pub(crate) fn coerce_reference(&mut self, value: Expr, to: ReferenceId, span: Span) -> Option<Expr> {
         let ty = Type::Reference(to);
+        // What it leads to was reported.
+        if [ty, value.ty].into_iter().any(|it| self.leads_to_unknown(it)) {
+            return None;
+        }
         let Type::Reference(from) = value.ty else { return self.no_reference(value.ty, ty, span) };
         if is_null(&value) {
             return Some(Expr { ty, ..value });
@@ -535,6 +539,10 @@ impl<'s> Checker<'_, 's> {
         Some(self.convert(Conversion::Same, ty, value))
     }
 
+    pub(super) fn leads_to_unknown(&self, ty: Type) -> bool {
+        matches!(ty, Type::Reference(id) if self.decl.table.unknown_references.contains(&id))
+    }
+
     fn no_reference(&mut self, found: Type, wanted: Type, span: Span) -> Option<Expr> {
         let (expected, name) = (self.type_name(wanted), self.type_name(found));
         let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {name}"))
@@ -555,6 +563,9 @@ impl<'s> Checker<'_, 's> {
 
     /// An address where an integer is declared, in dialects that let it be one.
     pub(crate) fn address_as(&mut self, value: Expr, into: Elementary, span: Span) -> Option<Expr> {
+        if self.leads_to_unknown(value.ty) {
+            return None;
+        }
         let holds = into.repr().is_integer() && into.repr().size() >= 4 && !into.is_time();
         if !holds || !self.decl.dialect(span).mixes_bits_and_integers() {
             let (expected, found) = (into.name(), self.type_name(value.ty));

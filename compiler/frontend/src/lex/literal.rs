@@ -157,10 +157,10 @@ fn spelled(mut nanoseconds: i128) -> String {
 }
 
 /// `'…'` or `"…"`, escapes resolved; the second value names those that mean nothing.
-pub fn string(text: &str) -> (Chars, Vec<Fault>) {
+pub fn string(text: &str, is_wide: bool) -> (Chars, Vec<Fault>) {
     let (quote, inner) = text.split_at(1);
     let inner = inner.strip_suffix(quote).unwrap_or(inner);
-    let mut chars = if quote == "\"" { Chars::Wide(Vec::new()) } else { Chars::Narrow(Vec::new()) };
+    let mut chars = if is_wide { Chars::Wide(Vec::new()) } else { Chars::Narrow(Vec::new()) };
     let mut faults = Vec::new();
     let mut at = 0;
     while let Some(escape) = inner[at..].find('$') {

@@ -535,3 +535,12 @@ pub fn reserved(span: Span, word: &str, own: &str) -> Diagnostic {
         .label("expected a name")
         .help(format!("choose another name, say `{own}_1`"))
 }
+
+/// `flags.[n]` of Logix: the bit of an integer whose number an expression gives.
+pub fn chosen_bit(span: Span, [integer, number]: [&str; 2]) -> Diagnostic {
+    let bit = format!("DWORD_TO_DINT(SHL(DWORD#1, {number}))");
+    Diagnostic::new(Code::E0902, span, format!("a bit whose number is an expression, `.[{number}]`, is not supported"))
+        .label("a bit's number is written as digits, `.3`")
+        .note(format!("of a DINT it is set by `{integer} := {integer} OR {bit};`, reset by `{integer} := {integer} AND NOT {bit};`"))
+        .help(format!("write `({integer} AND {bit}) <> 0` for its value"))
+}

@@ -272,6 +272,14 @@ fn member<'s>(input: &mut In<'_, '_, 's>, of: Expr<'s>) -> Parsed<ExprKind<'s>> 
             foreign_syntax::point_last(input, of.span);
             Ok(ExprKind::Error(Vec::new()))
         }
+        Kind::OpenBracket => {
+            let point = input.last();
+            let chosen = indices(input)?;
+            let text = [of.span, chosen[0].span].map(|it| input.text(it));
+            let error = diagnostics::chosen_bit(point.to(input.last()), text);
+            input.report(error);
+            Ok(ExprKind::Error(Vec::new()))
+        }
         // `Plant.Colour#Red` is `Plant.Colour.Red`.
         Kind::Prefix if input.kind_ahead(1) == Kind::Name => {
             let prefix = input.take();

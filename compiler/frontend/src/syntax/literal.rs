@@ -28,9 +28,12 @@ pub fn literal<'t, 's: 't>(prefix: Option<Name<'s>>) -> impl Rule<'t, 's, Litera
         Kind::Date => date,
         Kind::Text | Kind::WideText | Kind::OpenText => string,
     };
-    let value = read.map_with(|read, extra| {
+    let is_wide = prefix.is_some_and(|it| ["WSTRING", "WCHAR"].iter().any(|wide| it.text.eq_ignore_ascii_case(wide)));
+    let value = read.map_with(move |read, extra| {
         let token: SimpleSpan = extra.span();
-        read(extra.state(), token.start)
+        let state: &mut State<'t, 's> = extra.state();
+        let is_wide = is_wide && state.tokens.kinds.get(token.start) == Some(&Kind::Text);
+        if is_wide { text(state, token.start, true) } else { read(state, token.start) }
     });
     value.then(rule(|input| Ok(has_letters(input)))).map(move |(value, letters)| {
         let value = if letters { LiteralValue::Error } else { value };
@@ -131,9 +134,15 @@ fn duration<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
 }
 
 fn string<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
+    let is_wide = state.slice(state.place(at)).starts_with('"');
+    text(state, at, is_wide)
+}
+
+/// `'…'` or `"…"`; after `WSTRING#` the first is wide, too, and the dialect says whether it may be there.
+fn text<'s>(state: &mut State<'_, 's>, at: usize, is_wide: bool) -> LiteralValue<'s> {
     let span = state.place(at);
     let text = state.slice(span);
-    let (chars, faults) = lex::string(text);
+    let (chars, faults) = lex::string(text, is_wide);
     for fault in faults {
         report(state, Code::E0007, span, fault);
     }

@@ -21,6 +21,8 @@ pub struct Problem {
     pub at: u32,
     pub trouble: Trouble,
     pub message: String,
+    /// What to write, where that is not the same for all of its kind.
+    pub help: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +131,14 @@ impl Assembly {
     pub fn problem(&mut self, trouble: Trouble, message: String, place: &Range<usize>) {
         let at = offset(self.text.len());
         self.write("\n", place);
-        self.problems.push(Problem { at, trouble, message });
+        self.problems.push(Problem { at, trouble, message, help: None });
+    }
+
+    /// Says what to write in place of what the last problem is about.
+    pub fn help(&mut self, help: impl Into<String>) {
+        if let Some(problem) = self.problems.last_mut() {
+            problem.help = Some(help.into());
+        }
     }
 
     fn piece(&mut self, place: &Range<usize>, verbatim: bool) {

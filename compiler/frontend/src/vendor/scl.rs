@@ -1,12 +1,15 @@
 //! Sources of Siemens' SCL for S7-1200 and S7-1500: blocks whose names are in quotes and whose local names have a `#`
 //! before them, with what TIA Portal notes between their heads and their declarations. Data blocks become variables.
 
+mod counter;
+mod counter_use;
 mod data_block;
 mod token;
 mod words;
 
 use super::assembly::{Assembly, Chunk, Trouble};
 use core::ops::Range;
+use counter::Counters;
 use rustc_hash::FxHashMap;
 use staunch_ir::Elementary;
 use token::{Kind, Token};
@@ -24,19 +27,6 @@ const BLOCKS: [(&str, &str, &str); 6] = [
 
 /// What is noted in a head, before a value.
 const NOTES: [&str; 5] = ["VERSION", "TITLE", "AUTHOR", "FAMILY", "NAME"];
-
-const COUNTERS: [&str; 10] = [
-    "IEC_COUNTER",
-    "IEC_SCOUNTER",
-    "IEC_DCOUNTER",
-    "IEC_LCOUNTER",
-    "IEC_UCOUNTER",
-    "IEC_USCOUNTER",
-    "IEC_UDCOUNTER",
-    "IEC_ULCOUNTER",
-    "CTU",
-    "CTD",
-];
 
 /// Whether a text begins as such a source does: with a block whose name is in quotes, or one that no other system has;
 /// or it begins with another block of the language, and uses local names. One `#` may be a slip.
@@ -75,7 +65,9 @@ pub fn read(file: &str) -> Assembly {
         locals: FxHashMap::default(),
         has_enable: false,
         is_combined: false,
+        counters: Counters::default(),
     };
+    reader.counters = reader.called_counters();
     while reader.at < reader.tokens.len() {
         reader.block();
     }
@@ -99,6 +91,7 @@ struct Scl<'t> {
     has_enable: bool,
     /// Whether the value of a combined assignment is being read.
     is_combined: bool,
+    counters: Counters,
 }
 
 impl<'t> Scl<'t> {
@@ -172,6 +165,10 @@ impl<'t> Scl<'t> {
         if block.0 == "ORGANIZATION_BLOCK" && !["main", "ob1"].contains(&name.to_ascii_lowercase().as_str()) {
             let message = format!("the source does not say which event starts `{name}`");
             self.refuse(place.start..place.start, message);
+            self.out.help(
+                "what runs at the start, write in `Main` until a member of a data block says that it has run, `IF NOT \"Start\".done THEN … END_IF;`; what runs \
+                 in intervals, as a PROGRAM that a TASK of a CONFIGURATION runs",
+            );
         }
         self.replace(place.clone(), &name);
         self.at += 2;
@@ -269,6 +266,10 @@ impl<'t> Scl<'t> {
         let at = self.at;
         self.at += 1;
         let after_dot = at > 0 && self.text(at - 1) == ".";
+        if self.is_address_of_a_block(at) {
+            self.at = at + 3;
+            return self.address(at + 2, place.start..self.place(at + 2).end);
+        }
         match kind {
             Kind::Pragma => self.replace(place, ""),
             Kind::Local => {
@@ -286,19 +287,7 @@ impl<'t> Scl<'t> {
                 let name = if is_hidden && self.is_body { format!("Globals.{name}") } else { name };
                 self.replace(place, &name);
             }
-            Kind::Address if !after_dot || self.text(at).to_ascii_uppercase().starts_with("%DB") => {
-                let address = self.text(at).to_ascii_uppercase();
-                self.refuse(
-                    place.start..place.start,
-                    format!("`{address}` is an address: blocks share no memory but by name"),
-                );
-                // What reads on finds an operand of the same size.
-                let of_a_block = address.split_once(".DB").map(|it| it.1);
-                if let Some(size) = of_a_block.or_else(|| address.strip_prefix("%DB")) {
-                    let size = size.get(..1).unwrap_or("X");
-                    self.replace(place, &if size == "X" { "%MX0.0".to_owned() } else { format!("%M{size}0") });
-                }
-            }
+            Kind::Address if !after_dot => self.address(at, place),
             Kind::Literal => self.literal(place),
             Kind::Word => {
                 if after_dot {
@@ -314,6 +303,29 @@ impl<'t> Scl<'t> {
             }
             Kind::Other => self.sign(at, place),
             Kind::Address => {}
+        }
+    }
+
+    /// `"Plant".%DBX0.0`
+    fn is_address_of_a_block(&self, at: usize) -> bool {
+        let is_name = self.token(at).is_some_and(|it| matches!(it.kind, Kind::Word | Kind::Local | Kind::Quoted));
+        let address = self.text(at + 2).get(..3).filter(|_| is_name && self.text(at + 1) == ".");
+        address.is_some_and(|it| it.eq_ignore_ascii_case("%DB"))
+    }
+
+    /// Refuses an address, which with the block before it takes a place of the file.
+    fn address(&mut self, at: usize, place: Range<usize>) {
+        let address = self.text(at).to_ascii_uppercase();
+        let start = self.place(at).start;
+        self.copy_to(place.start);
+        let message = format!("`{address}` is an address: blocks share no memory but by name");
+        self.out.problem(Trouble::NotSupported, message, &(start..start));
+        // What reads on finds an operand of the same size.
+        let of_a_block = address.split_once(".DB").map(|it| it.1);
+        if let Some(size) = of_a_block.or_else(|| address.strip_prefix("%DB")) {
+            self.out.help("name the member of the data block that is there");
+            let size = size.get(..1).unwrap_or("X");
+            self.replace(place, &if size == "X" { "%MX0.0".to_owned() } else { format!("%M{size}0") });
         }
     }
 
@@ -395,12 +407,10 @@ impl<'t> Scl<'t> {
                 let ty = self.text(self.after(at) + 1).to_ascii_lowercase();
                 self.locals.insert(self.name(at).to_ascii_lowercase(), ty);
             }
-            _ if self.text(at.wrapping_sub(1)) == ":" && is_counter(&word) => {
-                let message = format!(
-                    "`{word}` is a counter of S7, whose rules its documents leave open: a family has others, `IEC.CTU`"
-                );
-                self.refuse(place.start..place.start, message);
-                self.replace(place, "IEC.CTU");
+            _ if self.text(at.wrapping_sub(1)) == ":" && counter::is_one(&word) => {
+                let name = self.name(self.declared_before(at));
+                let family = self.refuse_counter(&word, &name, place.start..place.start);
+                self.replace(place, &family);
             }
             _ => {}
         }
@@ -432,9 +442,13 @@ impl<'t> Scl<'t> {
         (at + 1..).find(|it| self.token(*it).is_none_or(|it| it.kind != Kind::Pragma)).unwrap_or(at)
     }
 
-    /// `#delay.TON(…)` of a TON_TIME is a call of it.
+    /// `#delay.TON(…)` of a TON_TIME is a call of it, and so is `"C".CTU(…)` of a counter.
     fn timer(&mut self, at: usize, place: Range<usize>) {
         let is_call = self.text(at + 1) == "(" && at > 2;
+        if is_call && self.counters.contains_key(&self.name(at - 2).to_ascii_lowercase()) {
+            let dot = self.place(at - 1).start;
+            return self.replace(dot..place.end, "");
+        }
         let ty = self.locals.get(&self.name(at.saturating_sub(2)).to_ascii_lowercase());
         let called = format!("{}_time", self.text(at).to_ascii_lowercase());
         if is_call && self.text(at.saturating_sub(3)) != "." && ty.is_some_and(|it| *it == called) {
@@ -481,10 +495,4 @@ fn type_of(value: &str) -> String {
         _ if value.trim_start_matches('-').parse::<i64>().is_ok_and(|it| it > 32767) => "DINT".to_owned(),
         _ => "INT".to_owned(),
     }
-}
-
-/// Whether a type is one of the system's counters.
-fn is_counter(ty: &str) -> bool {
-    let is_variant = |name: &str| ty.strip_prefix(name).is_some_and(|it| it.is_empty() || it.starts_with('_'));
-    COUNTERS.contains(&ty) || ["CTU", "CTD", "CTUD"].iter().any(|it| is_variant(it))
 }

@@ -1,6 +1,6 @@
 //! Pieces of files, and that reading takes time by the length of the file, whatever is in it.
 
-use super::{Trouble, listed, read};
+use super::{Trouble, listed, read, read_named};
 use crate::source::{Source, Span};
 
 fn pou(declaration: &str, body: &str) -> String {
@@ -193,4 +193,15 @@ fn sections_of_an_export_are_passed_over() {
     assert_eq!(export("PROGRAM P\n_LD_BODY\n_NETWORK\nEND_PROGRAM\nx"), format!("{head} PROGRAM P END_PROGRAM x"));
     assert_eq!(export("RESOURCE\n"), head);
     assert!(read("(* a comment *) PROGRAM P").is_none());
+}
+
+#[test]
+fn a_file_that_is_called_so_is_scl() {
+    let text =
+        "FUNCTION_BLOCK FB10\nVAR_INPUT a : INT; END_VAR\nCONST Top := 5; END_CONST\nBEGIN\nEND_FUNCTION_BLOCK\n";
+    assert!(read(text).is_none());
+    assert!(read_named("fb10.st", text).is_none());
+    let read = read_named("S7/FB10.SCL", text).unwrap();
+    assert!(read.problems.is_empty());
+    assert!(read.text.contains("VAR CONSTANT Top : INT := 5; END_VAR") && !read.text.contains("BEGIN"));
 }

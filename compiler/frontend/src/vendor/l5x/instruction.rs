@@ -2,6 +2,7 @@
 
 use super::super::assembly::{Assembly, Chunk, Trouble};
 use super::super::xml::{Broken, Element, Part, Reader};
+use super::data;
 use super::logic::Logic;
 use super::names::{Names, Operand, Scope, key, legal};
 use super::program::{Body, Routine, routines};
@@ -20,6 +21,14 @@ struct Instruction<'t> {
     is_prescanned: bool,
     /// Parameters that are other names of parts of local tags, and that calls have to give.
     alias_operands: Vec<Range<usize>>,
+    /// All of these, which others read, and write where they are inputs.
+    alias_parameters: Vec<Alias<'t>>,
+}
+
+struct Alias<'t> {
+    name: &'t str,
+    is_input: bool,
+    place: Range<usize>,
 }
 
 /// The instructions in an element that was opened, to its end. One may call another that comes after it.
@@ -31,6 +40,8 @@ pub fn all<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names, out: &
                 let it = instruction(file, reader, &element, names)?;
                 names.instructions.insert(key(it.name), it.operands.clone());
                 names.alias_parameters.extend(it.scope.aliases.keys().map(|alias| (key(it.name), alias.clone())));
+                let members = it.scope.types.iter().map(|(tag, ty)| ((key(it.name), tag.clone()), ty.clone()));
+                names.members.extend(members);
                 all.push(it);
             }
             Part::Open(element) => {
@@ -64,6 +75,7 @@ fn instruction<'t>(
         routines: Vec::new(),
         is_prescanned: element.attribute(file, "ExecutePrescan") == Some("true"),
         alias_operands: Vec::new(),
+        alias_parameters: Vec::new(),
     };
     it.declaration.push(Chunk::words("FUNCTION_BLOCK ", &element.place));
     it.declaration.extend(element.attribute_text(file, "Name"));
@@ -107,12 +119,14 @@ impl<'t> Instruction<'t> {
         let (name, usage) = (attribute("Name"), attribute("Usage"));
         if attribute("TagType") == "Alias" {
             self.scope.aliases.insert(key(name), attribute("AliasFor").to_owned());
+            self.alias_parameters.push(Alias { name, is_input: usage == "Input", place: element.place.clone() });
             if attribute("Required") == "true" {
                 self.alias_operands.push(element.place.clone());
             }
             return reader.skip();
         }
         self.scope.tags.insert(key(name));
+        self.scope.types.insert(key(name), tag::type_name(file, element));
         let is_output = usage == "Output";
         if attribute("Required") == "true" || usage == "InOut" {
             self.operands.push(Operand { name: legal(name).unwrap_or_else(|| name.to_owned()), is_output });
@@ -131,8 +145,23 @@ impl<'t> Instruction<'t> {
         Ok(())
     }
 
+    /// A parameter that is an alias, as a PROPERTY: what it stands for is seen from inside alone.
+    fn property(&self, alias: &Alias<'t>, names: &Names, out: &mut Assembly) {
+        let Alias { name, is_input, place } = alias;
+        let (Some(target), Some(ty)) = (names.meaning(name, &self.scope), names.type_of(name, &self.scope)) else {
+            return;
+        };
+        let (name, ty) = (legal(name).unwrap_or_else(|| (*name).to_owned()), data::ty_text(&ty).unwrap_or(ty));
+        out.write(&format!("PROPERTY {name} : {ty}\nGET\n{name} := {target};\nEND_GET\n"), place);
+        if *is_input {
+            out.write(&format!("SET\n{target} := {name};\nEND_SET\n"), place);
+        }
+        out.write("END_PROPERTY\n", place);
+    }
+
     fn write(&self, file: &'t str, names: &Names, out: &mut Assembly) {
         out.copy(file, &self.declaration);
+        self.alias_parameters.iter().for_each(|it| self.property(it, names, out));
         for place in &self.alias_operands {
             let message = format!("an operand of `{}` is an alias of a part of a local tag", self.name);
             out.problem(Trouble::NotSupported, message, place);

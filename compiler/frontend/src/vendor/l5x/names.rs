@@ -2,6 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::Elementary;
+use staunch_runtime::{BLOCKS, Family};
 
 /// What is known of a project when its logic is read.
 #[derive(Debug, Default)]
@@ -14,6 +15,8 @@ pub struct Names {
     pub instructions: FxHashMap<String, Vec<Operand>>,
     /// Of an instruction, by its name: parameters that are other names of parts of its local tags.
     pub alias_parameters: FxHashSet<(String, String)>,
+    /// The types of members, by those of their structures: data types and instructions.
+    pub members: FxHashMap<(String, String), String>,
     pub controller: Scope,
     /// Programs that are not disabled, and what they are called in Structured Text.
     pub programs: FxHashMap<String, String>,
@@ -33,6 +36,8 @@ pub struct Scope {
     pub tags: FxHashSet<String>,
     /// What they are other names of.
     pub aliases: FxHashMap<String, String>,
+    /// The types of an instruction's parameters and local tags.
+    pub types: FxHashMap<String, String>,
 }
 
 pub fn key(name: &str) -> String {
@@ -140,6 +145,38 @@ impl Names {
             }
         }
         false
+    }
+
+    /// The type of a part of an instruction's tags, or of an element of one: `Status.Counts[2].DN`, `Flags.3`.
+    pub fn type_of(&self, operand: &str, scope: &Scope) -> Option<String> {
+        self.type_by_way_of(operand, scope, scope.aliases.len())
+    }
+
+    /// The same by way of so many aliases: some may stand for one another.
+    fn type_by_way_of(&self, operand: &str, scope: &Scope, aliases: usize) -> Option<String> {
+        let (base, mut rest) = split(operand);
+        let mut ty = match scope.aliases.get(&key(base)) {
+            Some(target) => self.type_by_way_of(target, scope, aliases.checked_sub(1)?)?,
+            None => scope.types.get(&key(base))?.clone(),
+        };
+        while !rest.is_empty() {
+            if let Some(inner) = rest.strip_prefix('[') {
+                rest = inner.split_once(']')?.1;
+                continue;
+            }
+            let inner = rest.strip_prefix('.')?;
+            let end = inner.find(['.', '[']).unwrap_or(inner.len());
+            let is_bit = inner[..end].bytes().all(|it| it.is_ascii_digit());
+            ty = if is_bit { "BOOL".to_owned() } else { self.type_of_member(&ty, &inner[..end])? };
+            rest = &inner[end..];
+        }
+        Some(ty)
+    }
+
+    fn type_of_member(&self, ty: &str, member: &str) -> Option<String> {
+        let own = || BLOCKS.iter().find(|it| it.family == Family::Logix && it.is_named(ty))?.pin(member);
+        let declared = self.members.get(&(key(ty), key(member))).cloned();
+        declared.or_else(|| own().map(|it| it.ty.name().to_owned()))
     }
 
     /// What a name in a program's or an instruction's logic stands for, where that is another name.

@@ -13,7 +13,8 @@ type Chunks = Result<Vec<Chunk>, Broken>;
 pub fn data_type<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, names: &mut Names) -> Chunks {
     let place = &element.place;
     // Modules describe theirs again.
-    names.module_types.insert(key(element.attribute(file, "Name").unwrap_or_default()));
+    let of = element.attribute(file, "Name").unwrap_or_default();
+    names.module_types.insert(key(of));
     let is_text = element.attribute(file, "Family") == Some("StringFamily");
     let mut chunks = vec![Chunk::words("TYPE ", place)];
     chunks.extend(name_of(file, element));
@@ -27,6 +28,8 @@ pub fn data_type<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'
                 if is_text && attribute("Name") == "DATA" {
                     chunks.extend(member.attribute_text(file, "Dimension"));
                 } else if !is_text && attribute("Hidden") != "true" {
+                    let member_type = type_name(file, &member);
+                    names.members.insert((key(of), key(attribute("Name"))), member_type);
                     chunks.extend(declared(file, &member, dimension));
                     chunks.push(Chunk::words(";\n", &member.place));
                 }
@@ -48,6 +51,10 @@ fn declared<'t>(file: &'t str, element: &Element<'t>, dimensions: &str) -> Vec<C
     let place = &element.place;
     let mut chunks: Vec<Chunk> = name_of(file, element).into_iter().collect();
     match array_of(dimensions) {
+        // An in-out of one element is how Logix has one of any size.
+        Some(_) if dimensions == "1" && element.attribute(file, "Usage") == Some("InOut") => {
+            chunks.push(Chunk::words(" : ARRAY[*] OF ", place));
+        }
         Some(array) => chunks.push(Chunk::words(format!(" : {array}"), place)),
         None => {
             let at = ["Dimensions", "Dimension"].iter().find_map(|it| element.attribute_place(file, it));
@@ -65,6 +72,11 @@ fn ty<'t>(file: &'t str, element: &Element<'t>) -> Option<Chunk> {
         Some(text) => Chunk::words(text, &place),
         None => Chunk::verbatim(place),
     })
+}
+
+/// The type that an element says.
+pub fn type_name(file: &str, element: &Element<'_>) -> String {
+    element.attribute(file, "DataType").unwrap_or_default().to_owned()
 }
 
 /// The tags in an element that was opened, to its end; aliases are noted, to be written as what they name.
@@ -92,6 +104,9 @@ fn each_tag<'t>(
                         reader.skip()?;
                     }
                     None => {
+                        if element.name == "LocalTag" {
+                            scope.types.insert(name.clone(), type_name(file, &element));
+                        }
                         scope.tags.insert(name);
                         let is_constant = element.attribute(file, "Constant") == Some("true");
                         let head = if is_constant { format!("{head} CONSTANT ") } else { format!("{head} ") };

@@ -85,13 +85,14 @@ fn variables<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, 
     {
         head.push_str(if is(name) { word } else { "" });
     }
-    let mut chunks = vec![Chunk::words(head + "\n", &element.place)];
+    let head = head + "\n";
+    let mut chunks = vec![Chunk::words(head.clone(), &element.place)];
     let mut plain = None;
     let mut open = 1_usize;
     while open > 0 {
         match reader.part()? {
             Some(Part::Open(element)) if element.name == "variable" => {
-                chunks.extend(variable(file, reader, &element)?);
+                chunks.extend(variable_of(file, reader, &element, &head)?);
             }
             Some(Part::Open(element)) if element.name == "InterfaceAsPlainText" => {
                 plain = Some(reader.content("xhtml")?)
@@ -107,18 +108,39 @@ fn variables<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, 
     Ok(plain.unwrap_or(chunks))
 }
 
-/// `name AT %IX0.0 : INT := 5;`
-fn variable<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> Chunks {
+/// A variable of a section that begins with `head`; one that says that it is of another one is in a section of its own,
+/// so that the order stays.
+fn variable_of<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, head: &str) -> Chunks {
+    let (mut chunks, section) = variable(file, reader, element)?;
+    if let Some(section) = section {
+        chunks.insert(0, Chunk::words(format!("END_VAR\n{section}\n"), &element.place));
+        chunks.push(Chunk::words(format!("END_VAR\n{head}"), &element.place));
+    }
+    Ok(chunks)
+}
+
+/// `name AT %IX0.0 : INT := 5;`, and the section that it says that it is of.
+fn variable<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    element: &Element<'t>,
+) -> Result<(Vec<Chunk>, Option<&'static str>), Broken> {
     let place = &element.place;
     let mut chunks: Vec<Chunk> = element.attribute_text(file, "name").into_iter().collect();
     if let Some(address) = element.attribute_text(file, "address") {
         chunks.extend([Chunk::words(" AT ", place), address]);
     }
-    let (mut ty, mut initial) = (Vec::new(), Vec::new());
+    let (mut ty, mut initial, mut section) = (Vec::new(), Vec::new(), None);
     while let Some(part) = reader.part()? {
         match part {
             Part::Open(element) if element.name == "type" => ty = ty_within(file, reader)?,
             Part::Open(element) if element.name == "initialValue" => initial = value_within(file, reader)?,
+            Part::Open(element) if element.name == "addData" => {
+                if let Some(open) = open_array(file, reader)? {
+                    ty = vec![open.ty];
+                    section = open.section;
+                }
+            }
             Part::Open(_) => reader.skip()?,
             Part::Text(_) => {}
             Part::Close => break,
@@ -131,7 +153,42 @@ fn variable<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -
         chunks.extend(initial);
     }
     chunks.push(Chunk::words(";\n", place));
-    Ok(chunks)
+    Ok((chunks, section))
+}
+
+/// What CODESYS writes as an input that is a pointer, and is an `ARRAY[*]`.
+struct OpenArray {
+    ty: Chunk,
+    /// The section that it is declared in.
+    section: Option<&'static str>,
+}
+
+/// The attributes that say so, in data that was opened, to its end.
+fn open_array<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Option<OpenArray>, Broken> {
+    let (mut ty, mut section) = (None, None);
+    let mut open = 1_usize;
+    while open > 0 {
+        match reader.part()? {
+            Some(Part::Open(element)) => {
+                open += 1;
+                let value = element.attribute(file, "Value");
+                match element.attribute(file, "Name").filter(|_| element.name == "Attribute") {
+                    Some("variable_length_array") => ty = element.attribute_text(file, "Value"),
+                    Some("variable_length_array_original_scope") => section = value.and_then(section_of_scope),
+                    _ => {}
+                }
+            }
+            Some(Part::Close) => open -= 1,
+            Some(Part::Text(_)) => {}
+            None => break,
+        }
+    }
+    Ok(ty.map(|ty| OpenArray { ty, section }))
+}
+
+fn section_of_scope(scope: &str) -> Option<&'static str> {
+    let scopes = [("Input", "VAR_INPUT"), ("Output", "VAR_OUTPUT"), ("Inout", "VAR_IN_OUT")];
+    scopes.into_iter().find(|it| it.0.eq_ignore_ascii_case(scope)).map(|it| it.1)
 }
 
 /// `TYPE name : …; END_TYPE`
@@ -256,7 +313,7 @@ fn nested<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Nested, Broken> 
         match reader.part()? {
             Some(Part::Open(element)) => match element.name {
                 "baseType" => nested.base = ty_within(file, reader)?,
-                "variable" => nested.items.push(variable(file, reader, &element)?),
+                "variable" => nested.items.push(variable(file, reader, &element)?.0),
                 "dimension" | "range" => {
                     let place = &element.place;
                     let low = element.attribute_text(file, "lower");

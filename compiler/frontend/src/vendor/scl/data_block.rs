@@ -36,12 +36,8 @@ impl Scl<'_> {
         } else {
             let mut ty = self.global_name(self.at);
             let place = self.place(self.at);
-            if super::is_counter(&ty.to_ascii_uppercase()) {
-                let message = format!(
-                    "`{ty}` is a counter of S7, whose rules its documents leave open: a family has others, `IEC.CTU`"
-                );
-                self.refuse(place, message);
-                ty = "IEC.CTU".to_owned();
+            if super::counter::is_one(&ty.to_ascii_uppercase()) {
+                ty = self.refuse_counter(&ty, &name, place);
             } else {
                 self.replace(place, "");
             }
@@ -110,6 +106,7 @@ impl Scl<'_> {
                 place.start..place.start,
                 "a part of this data block is retained, and a part is not".to_owned(),
             );
+            self.out.help("write two data blocks: one whose sections are all `VAR RETAIN`, one for the others");
         }
         retained
     }
