@@ -523,24 +523,55 @@ impl<'s> Checker<'_, 's> {
         }
         let targets = (self.decl.program.target(from), self.decl.program.target(to));
         let same = targets.0 == targets.1 || self.decl.extends(targets.0, targets.1);
-        let loose = self.decl.dialect(span).mixes_bits_and_integers();
         if same && value.as_const().is_some() {
             return Some(Expr { ty, ..value });
         }
-        if !same && !loose {
-            let (expected, found) = (self.type_name(ty), self.type_name(value.ty));
-            self.report(
-                Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
-                    .label(format!("this is {found}"))
-                    .help("a reference keeps its type; in `codesys` an address may be given to any pointer"),
-            );
-            return None;
+        if !same && !self.may_refer(value.ty, ty, span) {
+            return self.refuse_other_target(value.ty, ty, span);
         }
         Some(self.convert(Conversion::Same, ty, value))
     }
 
     pub(super) fn leads_to_unknown(&self, ty: Type) -> bool {
         matches!(ty, Type::Reference(id) if self.decl.table.unknown_references.contains(&id))
+    }
+
+    /// Whether a reference may lead to what is of another type. CODESYS gives any address to any pointer, but checks the type
+    /// of what a REFERENCE TO is bound to: the same, or one that EXTENDS it. A STRING of another length is a STRING.
+    fn may_refer(&self, from: Type, to: Type, span: Span) -> bool {
+        if !self.decl.dialect(span).mixes_bits_and_integers() {
+            return false;
+        }
+        let (Some((id, from)), Some((wanted, to))) = (self.ref_type(from), self.ref_type(to)) else { return false };
+        let unknown = &self.decl.table.unknown_references;
+        if to.kind != RefKind::ReferenceTo || unknown.contains(&id) || unknown.contains(&wanted) {
+            return true;
+        }
+        match (from.target, to.target) {
+            (Type::String(from), Type::String(to)) => from.wide == to.wide,
+            (heir, base) => self.decl.extends_structure(heir, base),
+        }
+    }
+
+    fn refuse_other_target(&mut self, from: Type, to: Type, span: Span) -> Option<Expr> {
+        let (expected, found) = (self.type_name(to), self.type_name(from));
+        let help = match self.ref_type(to) {
+            Some((_, RefType { kind: RefKind::ReferenceTo, target }))
+                if self.decl.dialect(span).mixes_bits_and_integers() =>
+            {
+                let pointer = self.type_name(target);
+                format!("a REFERENCE TO keeps its type; a `POINTER TO {pointer}` may look at the bytes of another")
+            }
+            Some(_) | None => {
+                "a reference keeps its type; in `codesys` an address may be given to any pointer".to_owned()
+            }
+        };
+        self.report(
+            Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
+                .label(format!("this is {found}"))
+                .help(help),
+        );
+        None
     }
 
     fn no_reference(&mut self, found: Type, wanted: Type, span: Span) -> Option<Expr> {
