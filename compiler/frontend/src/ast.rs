@@ -342,6 +342,9 @@ impl VarBlock<'_> {
     }
 }
 
+/// The attribute of a FUNCTION_BLOCK and its inputs that start anew at each call.
+pub const AT_CALLS: &str = "initialize_on_call";
+
 /// `a, b AT %IX0.0 : BOOL R_EDGE := TRUE;`
 #[derive(Clone, Debug)]
 pub struct VarDecl<'s> {
@@ -355,6 +358,8 @@ pub struct VarDecl<'s> {
     pub started: Option<Initial<'s>>,
     /// `{attribute 'instance-path'}`: it starts with the path of its instance.
     pub instance_path: Option<Span>,
+    /// `{attribute 'initialize_on_call'}`: an input that a call does not give starts anew.
+    pub starts_at_calls: bool,
     /// The comment on the declaration's line or directly before it.
     pub doc: Option<String>,
     pub span: Span,
@@ -372,6 +377,7 @@ impl<'s> VarDecl<'s> {
             initial: None,
             started: None,
             instance_path: None,
+            starts_at_calls: false,
             doc: None,
             span,
         }

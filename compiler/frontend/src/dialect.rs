@@ -343,7 +343,12 @@ impl Dialect {
 
     /// SHR of a signed integer keeps its sign.
     pub const fn keeps_sign(self) -> bool {
-        matches!(self, Self::Codesys)
+        matches!(self, Self::Codesys | Self::Siemens)
+    }
+
+    /// SHL and SHR take integers besides bit strings.
+    pub const fn shifts_integers(self) -> bool {
+        matches!(self, Self::Codesys | Self::Siemens)
     }
 
     /// SEL and MUX evaluate only the input that is chosen, and MUX takes the last one for a K beyond it.

@@ -117,6 +117,9 @@ impl<'a> Declarations<'a> {
     fn pou(&mut self, pou: &'a ast::Pou<'a>, owner: Option<usize>) -> Outcome<()> {
         let key = self.names.key(&pou.name);
         let (name, kind, body) = (pou.name.text, pou.kind, pou.body.as_slice());
+        if pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("initialize_on_call")) {
+            return unknown("inputs that start anew at each call");
+        }
         let (base, implements) = self.bases(pou)?;
         let after_init = pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("call_after_init"));
         if kind == PouKind::Interface {

@@ -322,6 +322,9 @@ impl<'a> Machine<'a> {
         let (Some(value), Some(count)) = (value, count) else { return unknown("a shift without a count") };
         let Some(ty) = value.ty.elementary() else { return unknown("a shift of this type") };
         let value = in_repr(value.as_scalar()?, ty);
+        if let ("SHR", false, (..0, _)) = (name, self.is_codesys(), ty.range()) {
+            return unknown("SHR of a signed integer");
+        }
         if let ("SHR", true, (..0, _)) = (name, self.is_codesys(), ty.range()) {
             // The sign is kept.
             let count = count.as_integer()?.clamp(0, 127);

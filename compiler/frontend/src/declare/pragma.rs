@@ -48,10 +48,8 @@ const ATTRIBUTES: &[&str] = &[
     "estimated-stack-usage",
     "ExpandFully",
     "flow",
-    "global_init_slot",
     "hide",
     "hide_all_locals",
-    "init_namespace",
     "init_on_onlchange",
     "initialize_on_call",
     "instance-path",
@@ -119,11 +117,13 @@ const ATTRIBUTES: &[&str] = &[
 ];
 
 /// Attributes that act in CODESYS or TwinCAT and do not here, with what does the same.
-const WITHOUT_EFFECT: [(&str, &str); 6] = [
+const WITHOUT_EFFECT: [(&str, &str); 8] = [
     ("TcRetain", "declare the variable in VAR RETAIN"),
     ("TcPersistent", "declare the variable in VAR PERSISTENT"),
     ("TcInitOnReset", "declare the variable without RETAIN and PERSISTENT"),
     ("is_connected", "give the input an initial value that no caller gives, and compare with it"),
+    ("global_init_slot", "start what others need where the first PROGRAM begins"),
+    ("init_namespace", "give the STRING its initial value: `:= 'Library'`"),
     ("call_after_global_init_slot", "call it where the first PROGRAM begins"),
     ("call_before_global_exit_slot", "call it where the program ends"),
 ];
@@ -224,11 +224,13 @@ impl Log<'_> {
             (None, Some(asked)) => format!("`{asked}`"),
             (None, None) => "this condition".to_owned(),
         };
+        let help = match of_declared {
+            Some(&"type") => "of a FUNCTION_BLOCK or PROGRAM ask `defined(pou: …)`",
+            Some(_) | None => "ask for a name that `{define NAME}`, or the project, defines where that holds",
+        };
         let message = format!("{what} in the pragma `{word}` is not supported yet");
         self.report(
-            Diagnostic::new(Code::E0902, pragma.span, message)
-                .label("nothing here says whether that holds")
-                .help("ask for a name that `{define NAME}`, or the project, defines where that holds"),
+            Diagnostic::new(Code::E0902, pragma.span, message).label("nothing here says whether that holds").help(help),
         );
     }
 

@@ -227,6 +227,7 @@ impl<'s> Checker<'_, 's> {
         }
         let mut parts = Parts::default();
         parts.push(Held::Place(found.place), Role::Instance, callee);
+        self.start_inputs(&mut parts, slot, &given, callee)?;
         let mut references = vec![None; formals.len()];
         let is_right = self.block_parts(&mut parts, formals, &given, &mut references)?;
         let own = self.own_in_outs(formals, is_this);
@@ -294,6 +295,30 @@ impl<'s> Checker<'_, 's> {
             self.require_all(owner, &parameters, &given, arguments, is_optional, span)?;
         }
         Some(given)
+    }
+
+    /// The inputs that start anew at each call, and are not given (CODESYS, `initialize_on_call`).
+    fn start_inputs(&mut self, parts: &mut Parts, slot: usize, given: &[Given<'_, 's>], callee: Span) -> Option<()> {
+        let mut classes = std::iter::successors(Some(slot), |it| self.decl.base_of(*it));
+        let is_it = |it: &&str| it.eq_ignore_ascii_case(ast::AT_CALLS);
+        if !classes.any(|it| self.decl.pous[it].ast.attributes.iter().any(|it| is_it(it))) {
+            return Some(());
+        }
+        let signature = self.decl.signature(slot)?;
+        let declared = self.decl.pous[slot].ast.blocks.iter().flat_map(|it| &it.vars);
+        let marked = declared.filter(|it| it.starts_at_calls).flat_map(|it| &it.names).map(|it| it.span);
+        let marked: Vec<_> = marked.collect();
+        for (formal, given) in signature.formals.iter().zip(given) {
+            let Target::Field(field) = formal.target else { continue };
+            let is_missing = matches!(given, Given::Nothing) && formal.section == Section::Input;
+            if is_missing && marked.contains(&formal.name.span) {
+                let (state, ty) = (signature.state?, formal.resolved.ty);
+                let initial = self.decl.program.structure(state).fields[field.index()].initial.clone();
+                let value = self.constant_value(ty, initial, callee);
+                parts.push(Held::Value(value), Role::Stored(field, ty), callee);
+            }
+        }
+        Some(())
     }
 
     /// Evaluates what a call of a body gives, in the order in which it is written; whether all of it is right.

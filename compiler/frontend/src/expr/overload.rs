@@ -97,7 +97,8 @@ impl<'s> Checker<'_, 's> {
         name: ast::Name<'s>,
         mut before: Option<&mut [Block]>,
     ) -> Option<Resolved> {
-        let hint = expected.filter(|it| signature.result == Kind::T && self.admits(signature.class, *it, name.span));
+        let hint = expected
+            .filter(|it| signature.result == Kind::T && self.admits_operand(signature.class, *it, name.span, name));
         let evaluate = |this: &mut Self, at: usize, side: Option<Type>| {
             let takes = Takes::of(kind(signature, at), hint.or(side));
             this.taken(takes, values[at], &parameter_name(signature, at), name)
@@ -266,7 +267,7 @@ impl<'s> Checker<'_, 's> {
         let mut common: Option<Type> = None;
         for (operand, span) in operands.iter().copied() {
             let Some(own) = operand.ty() else { continue };
-            if !self.admits(class, own, span) && !self.becomes_real(class, own, span) {
+            if !self.admits_operand(class, own, span, name) && !self.becomes_real(class, own, span) {
                 self.report_class(class, own, span, name);
                 return None;
             }
@@ -290,7 +291,7 @@ impl<'s> Checker<'_, 's> {
             None => literals_type(literals(), expected),
         };
         let ty = if class == Class::Real { real(ty, join_in(self.decl.dialect(name.span))) } else { ty };
-        if !self.admits(class, ty, name.span) {
+        if !self.admits_operand(class, ty, name.span, name) {
             let span = operands.first().map_or(name.span, |it| it.1);
             self.report_class(class, ty, span, name);
             return None;
@@ -361,6 +362,13 @@ impl<'s> Checker<'_, 's> {
             Type::Enum(_) => class.contains(Class::Elementary),
             Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => class == Class::Any,
         }
+    }
+
+    /// The same of an operand of a function: those of S7 that shift take integers, too.
+    fn admits_operand(&self, class: Class, ty: Type, span: Span, function: ast::Name<'s>) -> bool {
+        let is_integer = matches!(ty, Type::Elementary(it) | Type::Subrange(it, _) if it.is_integer());
+        let shifts = ["SHL", "SHR"].iter().any(|it| it.eq_ignore_ascii_case(function.text));
+        shifts && is_integer && self.decl.dialect(span).shifts_integers() || self.admits(class, ty, span)
     }
 
     fn becomes_real(&self, class: Class, ty: Type, span: Span) -> bool {

@@ -549,6 +549,12 @@ impl<'s> Checker<'_, 's> {
         }
         match (from.target, to.target) {
             (Type::String(from), Type::String(to)) => from.wide == to.wide,
+            // What its base would be is not known, which has been reported.
+            (Type::Struct(heir), _)
+                if self.decl.slot_of_instance(heir).is_some_and(|it| self.decl.has_unknown_base(it)) =>
+            {
+                true
+            }
             (heir, base) => self.decl.extends_structure(heir, base),
         }
     }

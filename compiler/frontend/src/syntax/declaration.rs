@@ -17,7 +17,7 @@ use super::{
     foreign_types,
     initial::optional_initial,
     parser::{Expected, In, Parsed, Start, TokenReader},
-    pragma::instance_path_here,
+    pragma::{instance_path_here, starts_at_calls_here},
     recovery,
     token_class::ends_declarations,
     types::type_kind,
@@ -198,7 +198,7 @@ fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t,
 /// `names` holds what was read of the names, also if the rest does not parse.
 pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) -> Parsed<VarDecl<'s>> {
     let (first, start) = (input.number(), input.here());
-    let instance_path = instance_path_here(input);
+    let (instance_path, starts_at_calls) = (instance_path_here(input), starts_at_calls_here(input));
     // What is at an address needs no other name.
     let nameless = input.kind() == Kind::At;
     if !nameless {
@@ -219,7 +219,7 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
     };
     let doc = input.doc(first);
     let declared = VarDecl::new(std::mem::take(names), ty, start.to(input.last()));
-    Ok(VarDecl { address, edge, construction, initial, instance_path, doc, ..declared })
+    Ok(VarDecl { address, edge, construction, initial, instance_path, starts_at_calls, doc, ..declared })
 }
 
 /// `a, b`

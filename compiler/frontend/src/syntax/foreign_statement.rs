@@ -118,6 +118,7 @@ fn declared(input: &mut In<'_, '_, '_>) -> bool {
         initial: None,
         started: None,
         instance_path: None,
+        starts_at_calls: false,
         doc: None,
         span,
     });

@@ -2,7 +2,7 @@
 
 use crate::{
     Code, Diagnostic, Span,
-    ast::{External, Name, Pool},
+    ast::{AT_CALLS, External, Name, Pool},
 };
 
 use super::parser::{In, TokenReader};
@@ -44,6 +44,11 @@ pub fn pack_here(input: &mut In<'_, '_, '_>) -> Option<(u64, Span)> {
 pub fn instance_path_here(input: &mut In<'_, '_, '_>) -> Option<Span> {
     let is_it = |it: &Name<'_>| attribute(it.text).is_some_and(|it| it.eq_ignore_ascii_case("instance-path"));
     pragmas_here(input).into_iter().find(is_it).map(|it| it.span)
+}
+
+/// Whether `{attribute 'initialize_on_call'}` is between the last token and the next.
+pub fn starts_at_calls_here(input: &mut In<'_, '_, '_>) -> bool {
+    attributes_here(input).iter().any(|it| it.eq_ignore_ascii_case(AT_CALLS))
 }
 
 /// The pragmas between the last token and the next.

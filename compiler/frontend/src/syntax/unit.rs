@@ -3,6 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
+    Code, Diagnostic,
     ast::{
         Item, Modifiers, Name, Path, Pou, PouKind, Statement, StatementKind, TestPart, TestUnit, TypeDecl, TypeSpec,
         VarBlock, VarDecl, VarKind,
@@ -254,6 +255,9 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         extends.extend(later.0);
         implements.extend(later.1);
     }
+    if !implements.is_empty() {
+        extends.extend(late_bases(input, name));
+    }
     bases(input, &mut pou, extends, implements);
     pou.blocks.extend(parameters);
     let region = namespace::of_pou(input, opened);
@@ -367,6 +371,23 @@ fn names_after<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, Vec<Path<
     let paths = path.separated_by(token(Kind::Comma)).at_least(1).allow_trailing();
     let names = word(keyword).ignore_then(paths.collect());
     names.or(ahead(move |input| !input.is_word(keyword)).map(|()| Vec::new()))
+}
+
+/// `EXTENDS b` after IMPLEMENTS.
+fn late_bases<'s>(input: &mut In<'_, '_, 's>, name: Name<'s>) -> Vec<Path<'s>> {
+    if !input.is_word("EXTENDS") {
+        return Vec::new();
+    }
+    let from = input.here();
+    let paths = input.parse(names_after("EXTENDS")).unwrap_or_default();
+    let span = from.to(input.last());
+    let text = input.text(span);
+    input.report(
+        Diagnostic::new(Code::E0001, span, "EXTENDS comes before IMPLEMENTS")
+            .label("expected before IMPLEMENTS")
+            .help(format!("write `{} {text} IMPLEMENTS …`", name.text)),
+    );
+    paths
 }
 
 /// Gives a unit what it EXTENDS.

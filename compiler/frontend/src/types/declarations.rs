@@ -609,7 +609,7 @@ impl<'s> Declarations<'s> {
     pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
         let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
         let class = class.or_else(|| self.interface_of(ty));
-        if class.is_some_and(|it| self.has_unknown_parts(it)) {
+        if class.is_some_and(|it| self.has_unknown_parts(it) || self.has_unknown_base(it)) {
             return;
         }
         let owner = self.program.type_name(ty);
