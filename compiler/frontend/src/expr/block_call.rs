@@ -301,7 +301,7 @@ impl<'s> Checker<'_, 's> {
     fn start_inputs(&mut self, parts: &mut Parts, slot: usize, given: &[Given<'_, 's>], callee: Span) -> Option<()> {
         let mut classes = std::iter::successors(Some(slot), |it| self.decl.base_of(*it));
         let is_it = |it: &&str| it.eq_ignore_ascii_case(ast::AT_CALLS);
-        if !classes.any(|it| self.decl.pous[it].ast.attributes.iter().any(|it| is_it(it))) {
+        if !classes.any(|it| self.decl.pous[it].ast.attributes.iter().any(&is_it)) {
             return Some(());
         }
         let signature = self.decl.signature(slot)?;

@@ -252,11 +252,11 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
         end(input)?;
         return Ok(kind);
     }
-    if let ExprKind::Name(name) = target.kind {
-        if unsupported::is_jumped_to(input, name.text) || input.state().open.len() <= 1 {
-            input.take();
-            return Ok(StatementKind::Label(name));
-        }
+    if let ExprKind::Name(name) = target.kind
+        && (unsupported::is_jumped_to(input, name.text) || input.state().open.len() <= 1)
+    {
+        input.take();
+        return Ok(StatementKind::Label(name));
     }
     Err(input.problem(Expected::Action))
 }

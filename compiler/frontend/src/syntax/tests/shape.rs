@@ -95,10 +95,6 @@ fn statement(it: &Statement<'_>) -> String {
         StatementKind::Continue => "continue".into(),
         StatementKind::Return => "return".into(),
         StatementKind::ReturnIf(condition) => format!("return if {}", expr(condition)),
-        StatementKind::Try(it) => {
-            let finally = it.finally.as_ref().map_or(String::new(), |it| format!("finally{{{}}}", block(&it.body)));
-            format!("try{{{}}}catch{{{}}}{finally}", block(&it.body), block(&it.handler))
-        }
         StatementKind::Error => "error".into(),
     }
 }
