@@ -354,7 +354,8 @@ pub struct VarDecl<'s> {
     pub edge: Option<(Edge, Span)>,
     pub construction: Option<Box<Construction<'s>>>,
     pub initial: Option<Initial<'s>>,
-    /// Of a member of a TYPE: an address as its initial value, which is assigned as a variable of the TYPE starts.
+    /// Of a member of a TYPE: an address as its initial value, which is assigned as a variable of the TYPE starts. Of an input
+    /// that starts anew at calls: what its instance starts with.
     pub started: Option<Initial<'s>>,
     /// `{attribute 'instance-path'}`: it starts with the path of its instance.
     pub instance_path: Option<Span>,

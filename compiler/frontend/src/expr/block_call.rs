@@ -313,12 +313,32 @@ impl<'s> Checker<'_, 's> {
             let is_missing = matches!(given, Given::Nothing) && formal.section == Section::Input;
             if is_missing && marked.contains(&formal.name.span) {
                 let (state, ty) = (signature.state?, formal.resolved.ty);
+                if self.starts_with_address(slot, formal.name) {
+                    self.refuse_address_at_calls(formal.name, callee);
+                    return None;
+                }
                 let initial = self.decl.program.structure(state).fields[field.index()].initial.clone();
                 let value = self.constant_value(ty, initial, callee);
                 parts.push(Held::Value(value), Role::Stored(field, ty), callee);
             }
         }
         Some(())
+    }
+
+    fn starts_with_address(&self, slot: usize, input: ast::Name<'s>) -> bool {
+        let mut declared = self.decl.pous[slot].ast.blocks.iter().flat_map(|it| &it.vars);
+        declared.any(|it| it.started.is_some() && it.names.iter().any(|name| name.span == input.span))
+    }
+
+    /// Which address it starts with is known when the instance starts, and not at a call.
+    fn refuse_address_at_calls(&mut self, input: ast::Name<'s>, callee: Span) {
+        let message = format!("`{}` would start anew with its address at this call", input.text);
+        self.report(
+            Diagnostic::new(Code::E0902, callee, message)
+                .label("the call does not give it")
+                .other(input.span, "it starts with an address, by `initialize_on_call` at each call")
+                .help(format!("give it: `{} := …`", input.text)),
+        );
     }
 
     /// Evaluates what a call of a body gives, in the order in which it is written; whether all of it is right.

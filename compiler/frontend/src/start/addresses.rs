@@ -156,6 +156,9 @@ fn take<'s>(decl: &mut VarDecl<'s>, types: &Types<'s>, names: Option<&Names<'_, 
         return;
     }
     let initial = decl.initial.take();
+    if decl.starts_at_calls {
+        decl.started = initial.clone();
+    }
     for name in decl.names.clone() {
         let target = Expr { kind: ExprKind::Name(name), span: name.span };
         let expected = Expected::variable(&decl.ty, types, names);
