@@ -704,6 +704,10 @@ mod tests {
             let dialect = unit.dialects.first().copied().unwrap_or_default();
             let call = match unit.use_ {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
+                // It is there where one of its functions is named.
+                Use::Space if unit.name == WRITE_PROTECTED => {
+                    format!("PROGRAM Main {WRITE_PROTECTED}_BOOL(); END_PROGRAM")
+                }
                 Use::Space | Use::Open => format!("USING {};", unit.name),
                 Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
                 Use::Global => format!("PROGRAM Main VAR it : BOOL; END_VAR it := {}; END_PROGRAM", unit.name),
