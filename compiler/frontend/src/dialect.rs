@@ -144,6 +144,12 @@ impl Dialect {
         matches!(self, Self::Codesys | Self::Siemens)
     }
 
+    /// `INT_TO_STRING(207)` is `+207`, and `STRING_TO_SINT('300')` is 0. (STEP 7, "Explicit conversion": the rows STRING of the
+    /// integers, "special features apply to SCL"; S7-1200 manual, table 8-33)
+    pub const fn writes_plus(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

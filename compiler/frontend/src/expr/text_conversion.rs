@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
-    Arm, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Statement, StatementKind, StringType, TextOp, Type,
+    Arm, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Op, Statement, StatementKind, StringType, TextOp, Type,
     Value,
 };
 
@@ -39,7 +39,25 @@ impl<'s> Checker<'_, 's> {
         };
         let mut operands = vec![self.convert(Conversion::Value, Type::Elementary(operand), value)];
         operands.extend(self.kind_of_time(op, ty, name.span));
-        self.text_function_of(op, Type::string(longest), operands, name.span)
+        let number = operands.first().cloned()?;
+        let text = self.text_function_of(op, Type::string(longest), operands, name.span)?;
+        let has_sign = ty.is_integer() && self.decl.dialect(name.span).writes_plus();
+        if has_sign { self.with_plus(text, number, name.span) } else { Some(text) }
+    }
+
+    /// `+` before the text of a number that is not below 0.
+    fn with_plus(&mut self, text: Expr, number: Expr, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        let (ty, plus) = (number.ty, Type::string(1));
+        let zero = self.decl.program.repr(ty)?.zero();
+        let zero = Expr::new(ty, ExprKind::Const(zero), at);
+        let is_positive = self.apply(Op::Ge, ty, vec![number, zero], Type::BOOL, span)?;
+        let byte = self.convert(Conversion::Value, Type::Elementary(Elementary::Byte), is_positive);
+        let length = self.convert(Conversion::Value, Type::LINT, byte);
+        let sign = Expr::new(plus, ExprKind::Text(Chars::Narrow(vec![b'+'])), at);
+        let sign = self.text_function_of(TextOp::Left, plus, vec![sign, length], span)?;
+        let longest = text.ty.string_type()?.capacity + 1;
+        self.text_function_of(TextOp::Concat, Type::string(longest), vec![sign, text], span)
     }
 
     /// A string of one character. CHARs of a WSTRING are those of the same numbers.
@@ -119,8 +137,26 @@ impl<'s> Checker<'_, 's> {
         };
         let mut operands = vec![self.of_kind(text, false, span)?];
         operands.extend(self.kind_of_time(op, to, span));
-        let value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
+        let mut value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
+        if op == TextOp::ToLint && self.decl.dialect(span).writes_plus() {
+            value = self.zero_outside(value, to, span)?;
+        }
         Some(self.convert(Conversion::Value, Type::Elementary(to), value))
+    }
+
+    /// What the text spells, or 0 where the type does not hold that.
+    fn zero_outside(&mut self, number: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let Some((least, most)) = to.repr().range().filter(|_| to.repr().size() < 8) else { return Some(number) };
+        let at = self.at(span);
+        let limit =
+            |value: i128| Elementary::Lint.repr().integer(value).map(|it| Expr::constant(Elementary::Lint, it, at));
+        let (least, most) = (limit(least)?, limit(most)?);
+        let above = self.apply(Op::Ge, Type::LINT, vec![number.clone(), least], Type::BOOL, span)?;
+        let below = self.apply(Op::Le, Type::LINT, vec![number.clone(), most], Type::BOOL, span)?;
+        let holds = self.apply(Op::And, Type::BOOL, vec![above, below], Type::BOOL, span)?;
+        let byte = self.convert(Conversion::Value, Type::Elementary(Elementary::Byte), holds);
+        let holds = self.convert(Conversion::Value, Type::LINT, byte);
+        self.apply(Op::Mul, Type::LINT, vec![number, holds], Type::LINT, span)
     }
 
     fn first_character(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
