@@ -103,6 +103,12 @@ const SHAPES: &[Shape] = &[
         "END_PROGRAM",
     ),
     shape(
+        "METHODs",
+        "PROGRAM Main VAR b : Big; x : INT; END_VAR x := b.M0(1); END_PROGRAM FUNCTION_BLOCK Big VAR x : INT; END_VAR\n",
+        &["METHOD M# : INT VAR_INPUT a : INT; END_VAR M# := a + x; END_METHOD\n"],
+        "END_FUNCTION_BLOCK",
+    ),
+    shape(
         "calls of one generic FUNCTION",
         "FUNCTION Same : ANY VAR_INPUT x : ANY; END_VAR Same := x; END_FUNCTION PROGRAM Main VAR a : INT; r : REAL; END_VAR\n",
         &["a := Same(a); r := Same(r);\n"],

@@ -47,21 +47,22 @@ fn names<'a, 's>(block: &'a VarBlock<'s>) -> impl Iterator<Item = Key<'s>> + 'a 
 }
 
 /// What the initial values of one POU see.
-#[derive(Clone)]
 pub(super) struct Names<'a, 's> {
     everywhere: &'a Everywhere<'s>,
-    /// Whether a name of the POU, or of the one around, is a variable's that has its value before the POU's statements.
+    /// Of the POU around.
+    around: Option<&'a Names<'a, 's>>,
+    /// Whether a name of the POU is a variable's that has its value before the POU's statements.
     own: FxHashMap<Key<'s>, bool>,
 }
 
 impl<'a, 's> Names<'a, 's> {
     pub fn everywhere(everywhere: &'a Everywhere<'s>) -> Self {
-        Self { everywhere, own: FxHashMap::default() }
+        Self { everywhere, around: None, own: FxHashMap::default() }
     }
 
     /// These and those of a POU. What starts anew at each call has its value where that was [given](Self::give).
-    pub fn with(&self, pou: &Pou<'s>) -> Self {
-        let mut inner = self.clone();
+    pub fn with<'b>(&'b self, pou: &Pou<'s>) -> Names<'b, 's> {
+        let mut inner = Names { around: Some(self), ..Names::everywhere(self.everywhere) };
         for block in &pou.blocks {
             let lasts = match block.kind {
                 VarKind::Input | VarKind::InOut | VarKind::Inst | VarKind::Stat | VarKind::External => true,
@@ -106,6 +107,7 @@ impl<'a, 's> Names<'a, 's> {
 
     fn is_variable(&self, name: Key<'s>) -> bool {
         let is_everywhere = || self.everywhere.variables.contains(&name) || self.everywhere.pous.contains(&name);
-        self.own.get(&name).copied().unwrap_or_else(is_everywhere)
+        let is_around = || self.around.map_or_else(is_everywhere, |it| it.is_variable(name));
+        self.own.get(&name).copied().unwrap_or_else(is_around)
     }
 }
