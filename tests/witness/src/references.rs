@@ -22,7 +22,8 @@ impl<'a> Machine<'a> {
                     }
                     place.declared = declared.class();
                 }
-                if matches!(self.memory.get(place.at), Some(Cell::Text(text)) if text.contains(&0)) {
+                let seen = self.memory.get(place.at..place.at + place.ty.size()).unwrap_or_default();
+                if seen.iter().any(|it| matches!(it, Cell::Text(text) if text.contains(&0))) {
                     // A reference sees a text up to its first zero, which its name does not.
                     return unknown("a text with a zero in it, by a reference");
                 }

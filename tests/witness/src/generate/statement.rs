@@ -126,7 +126,10 @@ impl Writer {
             && let Some(place) = self.place_of(&Ty::Number(2), true, 1)
         {
             let condition = self.expression(&Ty::Bool, 2);
-            self.inside(|this| this.line(&format!("{place} := 7 / BOOL_TO_INT({condition});")));
+            // The counter keeps it from being a constant, which is refused.
+            let counter = format!("{}w0", self.loop_prefix);
+            let divisor = format!("BOOL_TO_INT({condition}) + {counter} - {counter}");
+            self.inside(|this| this.line(&format!("{place} := 7 / ({divisor});")));
             self.some(depth - 1);
         }
         self.jump();

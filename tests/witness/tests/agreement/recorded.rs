@@ -10,6 +10,7 @@ use staunch_ir::interpret::{Interpreter, Stop};
 use staunch_ir::symbols::map_text;
 use staunch_runtime::{Context, Fault};
 use std::fs;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Statements that a scan may take: a case that hangs fails instead.
 const STEPS: u64 = 50_000_000;
@@ -33,7 +34,10 @@ pub fn recorded(
 ) -> Result<Vec<Event>, String> {
     let leaves = Leaves::new(program);
     let map = Map::parse(&map_text(program, leaves.layout())).map_err(|it| it.to_string())?;
-    let stimulus = std::env::temp_dir().join(format!("staunch-witness-{}-{name}.csv", std::process::id()));
+    // Two tests may run one case at a time.
+    static RUNS: AtomicU64 = AtomicU64::new(0);
+    let number = RUNS.fetch_add(1, Ordering::Relaxed);
+    let stimulus = std::env::temp_dir().join(format!("staunch-witness-{}-{number}-{name}.csv", std::process::id()));
     fs::write(&stimulus, table.stimulus()).map_err(|it| it.to_string())?;
     let options = Options {
         scans: table.scans().last().copied(),
