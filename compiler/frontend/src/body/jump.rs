@@ -2,7 +2,7 @@
 //! on, and leaves what is between it and that loop.
 
 use crate::expr::checker::Checker;
-use crate::spelling::Key;
+use crate::spelling::{Key, nearest};
 use crate::types::jumps::Jumps;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::StatementKind as Ast;
@@ -98,15 +98,18 @@ impl<'s> Checker<'_, 's> {
             Some((at, number + 1))
         });
         let Some((list, number)) = found else {
-            self.report(
-                Diagnostic::new(
-                    Code::E0514,
-                    name.span,
-                    format!("there is no label `{}` to jump to from here", name.text),
-                )
-                .label("a label is in the same list of statements, or in one around it")
-                .help(format!("write `{}:` there; a jump does not lead into a block", name.text)),
-            );
+            let labels = self.jumps.iter().flat_map(|it| &it.labels).map(|it| it.0);
+            let error = Diagnostic::new(
+                Code::E0514,
+                name.span,
+                format!("there is no label `{}` to jump to from here", name.text),
+            )
+            .label("a label is in the same list of statements, or in one around it");
+            let error = match nearest(name.text, labels) {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+                None => error.help(format!("write `{}:` there; a jump does not lead into a block", name.text)),
+            };
+            self.report(error);
             return;
         };
         let Some(jumps) = self.jumps.get_mut(list) else { return };
