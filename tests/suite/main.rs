@@ -21,3 +21,4 @@ mod architecture;
 mod documents;
 mod layers;
 mod pages;
+mod rules;

@@ -2,6 +2,7 @@
 
 pub(crate) mod library;
 pub(crate) mod missing;
+pub mod rules;
 
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
@@ -144,12 +145,6 @@ impl Dialect {
         matches!(self, Self::Codesys | Self::Siemens)
     }
 
-    /// `INT_TO_STRING(207)` is `+207`, and `STRING_TO_SINT('300')` is 0. (STEP 7, "Explicit conversion": the rows STRING of the
-    /// integers, "special features apply to SCL"; S7-1200 manual, table 8-33)
-    pub const fn writes_plus(self) -> bool {
-        matches!(self, Self::Siemens)
-    }
-
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)
@@ -223,11 +218,6 @@ impl Dialect {
     /// A member of a structure may be a single bit, of the type BIT.
     pub const fn has_bits(self) -> bool {
         matches!(self, Self::Codesys)
-    }
-
-    /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
-    pub const fn promotes_integers(self) -> bool {
-        matches!(self, Self::Codesys | Self::Logix)
     }
 
     /// A call of a FUNCTION gives every input that has no default.
@@ -315,15 +305,6 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// What a STRING holds that is declared without a length.
-    pub const fn string_capacity(self) -> u16 {
-        match self {
-            Self::Logix => 82,
-            _ if self.is_standard() => 254,
-            _ => 80,
-        }
-    }
-
     /// A text in single quotes after `WSTRING#` or `WCHAR#` is wide.
     pub const fn has_wide_texts_in_single_quotes(self) -> bool {
         matches!(self, Self::Siemens)
@@ -345,11 +326,6 @@ impl Dialect {
     /// Nothing is assigned at an address of inputs, `%I`.
     pub const fn protects_inputs(self) -> bool {
         matches!(self, Self::Codesys)
-    }
-
-    /// SHR of a signed integer keeps its sign.
-    pub const fn keeps_sign(self) -> bool {
-        matches!(self, Self::Codesys | Self::Siemens)
     }
 
     /// SHL and SHR take integers besides bit strings.

@@ -41,7 +41,7 @@ mod program;
 mod lints;
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
-pub use dialect::Dialect;
+pub use dialect::{Dialect, rules};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::Options;

@@ -387,7 +387,7 @@ impl<'s> Declarations<'s> {
     ) -> Option<Resolved> {
         let string = |capacity| Resolved::plain(Type::String(StringType { wide, capacity }));
         let Some(expr) = capacity else {
-            return Some(string(self.dialect(span).string_capacity()));
+            return Some(string(self.dialect(span).rules().default_string.choice.capacity()));
         };
         let length = self.constant_integer(expr, scope)?;
         if !(1..=MAX_CAPACITY).contains(&length) {

@@ -1,6 +1,7 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
+use crate::dialect::rules::ToBool;
 use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Chars, Conversion, Elementary, Expr, Op, Type, Value};
@@ -77,7 +78,7 @@ impl<'s> Checker<'_, 's> {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
                 self.as_time(nanoseconds, to, span)
             }
-            (None, None) if to == Elementary::Bool => self.rightmost_bit(value, from, span),
+            (None, None) if to == Elementary::Bool => self.truth(value, from, span),
             (None, None) => Some(self.convert(Conversion::Value, target, value)),
             (Some(unit), None) => {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
@@ -94,18 +95,19 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// The rightmost bit of a bit string or an integer; where those mix, and of a real, whether it is
-    /// `<> 0`.
-    fn rightmost_bit(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
-        let whole = from.repr().integer(1).filter(|_| !self.decl.dialect(span).mixes_bits_and_integers());
-        let rightmost = match whole {
-            Some(one) if from != Elementary::Bool => {
+    /// A number as a BOOL, as the dialect's rule for its class says; a real is TRUE where it is not 0.
+    fn truth(&mut self, value: Expr, from: Elementary, span: Span) -> Option<Expr> {
+        let rules = self.decl.dialect(span).rules();
+        let rule = if from.is_bits() { rules.bits_to_bool } else { rules.integer_to_bool };
+        let one = from.repr().integer(1).filter(|_| from != Elementary::Bool && rule.choice == ToBool::RightmostBit);
+        let number = match one {
+            Some(one) => {
                 let (ty, one) = (value.ty, Expr::constant(from, one, value.at));
                 self.apply(Op::And, ty, vec![value, one], ty, span)?
             }
-            _ => value,
+            None => value,
         };
-        Some(self.convert(Conversion::Value, Type::BOOL, rightmost))
+        Some(self.convert(Conversion::Value, Type::BOOL, number))
     }
 
     /// Nanoseconds to a unit or back, in LREAL where fractions matter, else in LINT.

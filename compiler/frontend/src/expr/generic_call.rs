@@ -151,7 +151,7 @@ impl<'s> Checker<'_, 's> {
     /// What a variable would be declared with for a text that is written: one type for texts of many lengths.
     fn literal_capacity(&self, operands: &[(&Operand, Span)], span: Span) -> u16 {
         let is_text = |it: &(&Operand, Span)| it.0.typed().is_some_and(|it| matches!(it.kind, ExprKind::Text(_)));
-        if operands.iter().any(is_text) { self.decl.dialect(span).string_capacity() } else { 0 }
+        if operands.iter().any(is_text) { self.decl.dialect(span).rules().default_string.choice.capacity() } else { 0 }
     }
 
     /// Brings the open parts to the types that the call has told; gives the storage of outputs, by their formals.

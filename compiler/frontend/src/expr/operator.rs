@@ -116,7 +116,7 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
         };
-        let ty = if dialect.promotes_integers() { promoted(&sides, own) } else { own };
+        let ty = if dialect.rules().promotes_integers() { promoted(&sides, own) } else { own };
         let a = self.side(sides.a, ty, sides.left)?;
         let b = self.side(sides.b, ty, sides.right)?;
         Some(Meeting { ty: Type::Elementary(ty), own: Type::Elementary(own), a, b })

@@ -8,7 +8,7 @@ use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Location, Op, Type};
 
 impl Checker<'_, '_> {
     pub(crate) fn promotes(&self, ty: Elementary, span: Span) -> bool {
-        is_narrow(ty) && self.decl.dialect(span).promotes_integers()
+        is_narrow(ty) && self.decl.dialect(span).rules().promotes_integers()
     }
 
     /// The value at DINT, where the dialect computes those of its type there.

@@ -184,7 +184,7 @@ impl<'s> Checker<'_, 's> {
             _ => self.count(count)?,
         };
         let signed = ty.elementary().is_some_and(|it| it.is(Class::Signed));
-        let keeps_sign = op == Op::Shr && signed && self.decl.dialect(span).keeps_sign();
+        let keeps_sign = op == Op::Shr && signed && self.decl.dialect(span).rules().keeps_sign();
         let op = if keeps_sign { Op::Sar } else { op };
         self.apply(op, ty, vec![value, count], ty, span)
     }

@@ -41,7 +41,7 @@ impl<'s> Checker<'_, 's> {
         operands.extend(self.kind_of_time(op, ty, name.span));
         let number = operands.first().cloned()?;
         let text = self.text_function_of(op, Type::string(longest), operands, name.span)?;
-        let has_sign = ty.is_integer() && self.decl.dialect(name.span).writes_plus();
+        let has_sign = ty.is_integer() && self.decl.dialect(name.span).rules().writes_plus();
         if has_sign { self.with_plus(text, number, name.span) } else { Some(text) }
     }
 
@@ -138,7 +138,7 @@ impl<'s> Checker<'_, 's> {
         let mut operands = vec![self.of_kind(text, false, span)?];
         operands.extend(self.kind_of_time(op, to, span));
         let mut value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
-        if op == TextOp::ToLint && self.decl.dialect(span).writes_plus() {
+        if op == TextOp::ToLint && self.decl.dialect(span).rules().writes_plus() {
             value = self.zero_outside(value, to, span)?;
         }
         Some(self.convert(Conversion::Value, Type::Elementary(to), value))

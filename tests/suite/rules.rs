@@ -1,0 +1,54 @@
+//! `docs/dialects.md` shows the rules of values as the compiler has them.
+
+use staunch_frontend::{Dialect, rules};
+use std::fmt::Write;
+
+const START: &str = "<!-- rules of values: written by `STAUNCH_WRITE_RULES=1 cargo test -p staunch-tests rules` -->\n";
+const END: &str = "<!-- end of the rules of values -->\n";
+
+/// The choices, a row for each rule; below, what shows those that are not the default dialect's.
+fn table() -> String {
+    let names: Vec<_> = Dialect::ALL.iter().map(|it| format!("`{}`", it.name())).collect();
+    let mut text = format!("| | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
+    let rows = rules::table();
+    for row in &rows {
+        let choices: Vec<_> = row.followed.iter().map(|it| it.0).collect();
+        writeln!(text, "| {} | {} |", row.rule, choices.join(" | ")).unwrap();
+    }
+    text.push_str("\n| rule | shown by |\n|---|---|\n");
+    for row in &rows {
+        let mut shown: Vec<(&str, Vec<&str>)> = Vec::new();
+        for (name, (_, evidence)) in names.iter().zip(row.followed) {
+            match shown.iter_mut().find(|it| it.0 == evidence) {
+                Some((_, dialects)) => dialects.push(name),
+                None => shown.push((evidence, vec![name])),
+            }
+        }
+        let shown: Vec<_> = shown.iter().map(|(evidence, names)| format!("{}: {evidence}", names.join(" "))).collect();
+        writeln!(text, "| {} | {} |", row.rule, shown.join("; ")).unwrap();
+    }
+    text
+}
+
+#[test]
+fn rules_of_values_are_documented() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/dialects.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = page.split_once(START).expect("docs/dialects.md has the place of the rules of values");
+    let (written, after) = rest.split_once(END).expect("docs/dialects.md has the end of the rules of values");
+    let table = table();
+    if std::env::var_os("STAUNCH_WRITE_RULES").is_some() {
+        std::fs::write(path, [before, START, &table, END, after].concat()).unwrap();
+        return;
+    }
+    assert_eq!(written, table, "docs/dialects.md differs from compiler/frontend/src/dialect/rules.rs");
+}
+
+#[test]
+fn every_choice_has_its_evidence() {
+    for row in rules::table() {
+        for (words, evidence) in row.followed {
+            assert!(!words.is_empty() && !evidence.is_empty(), "{}: {words}", row.rule);
+        }
+    }
+}
