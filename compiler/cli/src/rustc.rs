@@ -172,6 +172,9 @@ fn executable(command: &mut Command, folder: &Path, linker: Option<&OsString>) {
 /// Rustc merges the runtime into the object where it makes the library too.
 fn library(command: &mut Command, folder: &Path) {
     command.args(["--crate-type", "staticlib"]).args(WHOLE);
+    // What rustc makes on the way goes there too, and not to the folder that the command is called in, where a second one would
+    // take it for its own.
+    command.arg("--out-dir").arg(folder);
     for (what, file) in [("link", LIBRARY), ("obj", OBJECT)] {
         let mut argument = OsString::from(format!("{what}="));
         argument.push(folder.join(file));
