@@ -268,9 +268,9 @@ fn min(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
 fn limit(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (min, value, max) = (o.values[0], o.values[1], o.values[2]);
     let is_below = less(f, o.repr, value, min);
-    let is_above = less(f, o.repr, max, value);
-    let lowered = f.ins().select(is_above, max, value);
-    f.ins().select(is_below, min, lowered)
+    let raised = f.ins().select(is_below, min, value);
+    let is_above = less(f, o.repr, max, raised);
+    f.ins().select(is_above, max, raised)
 }
 
 fn within(f: &mut Function<'_, '_>, o: &Operands, fault: FaultKind) -> Clif {

@@ -151,6 +151,8 @@ macro_rules! for_each_text_op {
             ToUlint      "_TO_ULINT"   to_ulint   (IN: STRING) -> ULINT [one];
             ToReal       "_TO_REAL"    to_real    (IN: STRING) -> REAL [one];
             ToLreal      "_TO_LREAL"   to_lreal   (IN: STRING) -> LREAL [one];
+            ToFixedReal  "_TO_FIXED_REAL"  to_fixed_real  (IN: STRING) -> REAL [one];
+            ToFixedLreal "_TO_FIXED_LREAL" to_fixed_lreal (IN: STRING) -> LREAL [one];
             ToTime       "_TO_TIME"    to_time    (IN: STRING, KIND: LINT) -> LINT [one];
             // Between STRING and WSTRING.
             Widen        "_WIDEN"      widen      (IN: STRING) -> WSTRING [one];

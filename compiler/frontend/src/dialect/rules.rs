@@ -3,6 +3,7 @@
 //! is in the runtime. `docs/dialects.md` has the same table, which a test holds equal.
 
 use super::Dialect;
+use staunch_runtime::Elementary;
 
 /// How one dialect computes.
 #[derive(Debug)]
@@ -18,9 +19,54 @@ pub struct Rules {
     pub real_and_bits: Followed<RealAndBits>,
     pub default_string: Followed<DefaultString>,
     pub integer_text: Followed<IntegerText>,
+    pub date_as_number: Followed<DateAsNumber>,
+    pub real_of_text: Followed<RealOfText>,
+    pub replace_before: Followed<ReplaceBefore>,
+    pub sqrt_of_negative: Followed<SqrtOfNegative>,
+    pub modulo_of_reals: Followed<ModuloOfReals>,
+    pub rotated_constant: Followed<RotatedConstant>,
 }
 
 impl Rules {
+    /// A real beyond an integer type becomes the low bits of its number.
+    pub const fn keeps_low_bits(&self) -> bool {
+        matches!(self.real_to_integer.choice, RealToInteger::LowBits)
+    }
+
+    /// A real and a bit string of as many bits have the same ones.
+    pub const fn copies_bits(&self) -> bool {
+        matches!(self.real_and_bits.choice, RealAndBits::Bits)
+    }
+
+    /// A real is rounded to a whole number before it counts as time.
+    pub const fn counts_whole_units(&self) -> bool {
+        matches!(self.time_as_number.choice, TimeAsNumber::WholeMilliseconds)
+    }
+
+    pub const fn counts_days(&self) -> bool {
+        matches!(self.date_as_number.choice, DateAsNumber::DaysSince1990)
+    }
+
+    pub const fn reads_fixed_point(&self) -> bool {
+        matches!(self.real_of_text.choice, RealOfText::FixedPoint)
+    }
+
+    pub const fn replaces_nothing_before(&self) -> bool {
+        matches!(self.replace_before.choice, ReplaceBefore::Empty)
+    }
+
+    pub const fn takes_root_of_magnitude(&self) -> bool {
+        matches!(self.sqrt_of_negative.choice, SqrtOfNegative::RootOfMagnitude)
+    }
+
+    pub const fn has_modulo_of_reals(&self) -> bool {
+        matches!(self.modulo_of_reals.choice, ModuloOfReals::Remainder)
+    }
+
+    pub const fn rotates_constants_at_least_bits(&self) -> bool {
+        matches!(self.rotated_constant.choice, RotatedConstant::FewestBits)
+    }
+
     /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
     pub const fn promotes_integers(&self) -> bool {
         matches!(self.narrow_integers.choice, NarrowIntegers::At32Bits)
@@ -74,6 +120,7 @@ impl Choice for NarrowIntegers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RealToInteger {
     Saturates,
+    LowBits,
 }
 
 impl Choice for RealToInteger {
@@ -82,6 +129,7 @@ impl Choice for RealToInteger {
     fn words(self) -> &'static str {
         match self {
             Self::Saturates => "the nearest value of the type",
+            Self::LowBits => "the low bits of the whole number",
         }
     }
 }
@@ -138,6 +186,7 @@ impl Choice for ShrOfSigned {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAsNumber {
     Milliseconds,
+    WholeMilliseconds,
 }
 
 impl Choice for TimeAsNumber {
@@ -146,6 +195,7 @@ impl Choice for TimeAsNumber {
     fn words(self) -> &'static str {
         match self {
             Self::Milliseconds => "milliseconds",
+            Self::WholeMilliseconds => "milliseconds; of a REAL whole ones",
         }
     }
 }
@@ -154,6 +204,7 @@ impl Choice for TimeAsNumber {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RealAndBits {
     Value,
+    Bits,
 }
 
 impl Choice for RealAndBits {
@@ -162,6 +213,7 @@ impl Choice for RealAndBits {
     fn words(self) -> &'static str {
         match self {
             Self::Value => "the value",
+            Self::Bits => "the bits, where there are as many",
         }
     }
 }
@@ -214,10 +266,118 @@ impl Choice for IntegerText {
     }
 }
 
+/// What a number counts that becomes a DATE, or a DATE that becomes a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DateAsNumber {
+    SecondsSince1970,
+    DaysSince1990,
+}
+
+impl Choice for DateAsNumber {
+    const RULE: &'static str = "DATE as a number";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::SecondsSince1970 => "seconds since 1970-01-01",
+            Self::DaysSince1990 => "days since 1990-01-01",
+        }
+    }
+}
+
+/// Which numbers a text spells that becomes a real.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RealOfText {
+    WithExponent,
+    FixedPoint,
+}
+
+impl Choice for RealOfText {
+    const RULE: &'static str = "REAL of a text";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::WithExponent => "with an exponent; a comma ends it",
+            Self::FixedPoint => "without an exponent; commas are passed over",
+        }
+    }
+}
+
+/// What REPLACE gives where P is below 1, or L below 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReplaceBefore {
+    Nearest,
+    Empty,
+}
+
+impl Choice for ReplaceBefore {
+    const RULE: &'static str = "REPLACE with P < 1 or L < 0";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Nearest => "acts as P = 1, L = 0",
+            Self::Empty => "an empty text",
+        }
+    }
+}
+
+/// What SQRT gives below 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SqrtOfNegative {
+    NotANumber,
+    RootOfMagnitude,
+}
+
+impl Choice for SqrtOfNegative {
+    const RULE: &'static str = "SQRT of a negative number";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::NotANumber => "NaN",
+            Self::RootOfMagnitude => "the root of its absolute value",
+        }
+    }
+}
+
+/// Whether MOD takes reals.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModuloOfReals {
+    Refused,
+    Remainder,
+}
+
+impl Choice for ModuloOfReals {
+    const RULE: &'static str = "MOD of REALs";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Refused => "refused",
+            Self::Remainder => "`a - TRUNC(a / b) * b`",
+        }
+    }
+}
+
+/// How many bits ROL and ROR turn of a constant without a type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RotatedConstant {
+    BitsOfPlace,
+    FewestBits,
+}
+
+impl Choice for RotatedConstant {
+    const RULE: &'static str = "ROL and ROR of a constant";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::BitsOfPlace => "bits of the type of its place",
+            Self::FewestBits => "bits of the smallest type that holds it",
+        }
+    }
+}
+
 const IEC: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::AtTheirType, "IEC 61131-3, 6.6.2.5.4: a result has its operands' type"),
     real_to_integer: follows(RealToInteger::Saturates, "IEC 61131-3, table 22: left to the implementer"),
-    integer_to_bool: follows(ToBool::RightmostBit, "IEC 61131-3, table 24"),
+    integer_to_bool: follows(ToBool::NotZero, "left to the implementer; no system is known that does otherwise"),
     bits_to_bool: follows(ToBool::RightmostBit, "IEC 61131-3, table 24"),
     division_by_zero: follows(ByZero::Faults, "IEC 61131-3, table A.1: an error"),
     modulo_by_zero: follows(ByZero::Faults, "IEC 61131-3, table A.1: an error"),
@@ -226,6 +386,12 @@ const IEC: Rules = Rules {
     real_and_bits: follows(RealAndBits::Value, "left to the implementer"),
     default_string: follows(DefaultString::Holds254, "left to the implementer"),
     integer_text: follows(IntegerText::Digits, "left to the implementer"),
+    date_as_number: follows(DateAsNumber::SecondsSince1970, "left to the implementer; as CODESYS help, \"DATE\""),
+    real_of_text: follows(RealOfText::WithExponent, "left to the implementer"),
+    replace_before: follows(ReplaceBefore::Nearest, "IEC 61131-3, table 34, does not say it"),
+    sqrt_of_negative: follows(SqrtOfNegative::NotANumber, "IEC 60559, as IEC 61131-3 has REAL"),
+    modulo_of_reals: follows(ModuloOfReals::Refused, "IEC 61131-3, table 29: of ANY_INT"),
+    rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page says it"),
 };
 
 const CSCAPE: Rules = Rules { default_string: follows(DefaultString::Holds80, "no page says it; as CODESYS"), ..IEC };
@@ -236,6 +402,8 @@ const CODESYS: Rules = Rules {
     bits_to_bool: follows(ToBool::NotZero, "CODESYS help, \"Integer conversion\""),
     shr_of_signed: follows(ShrOfSigned::Sign, "CODESYS help, \"SHR\""),
     default_string: follows(DefaultString::Holds80, "CODESYS help, \"STRING\""),
+    time_as_number: follows(TimeAsNumber::WholeMilliseconds, "CODESYS help, \"REAL / LREAL conversion\""),
+    rotated_constant: follows(RotatedConstant::FewestBits, "CODESYS help, \"ROL\", \"ROR\"; Beckhoff, \"ROL\""),
     ..IEC
 };
 
@@ -244,12 +412,19 @@ const OPENPLC: Rules = IEC;
 const LOGIX: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::At32Bits, "1756-RM006, \"Data conversions\""),
     default_string: follows(DefaultString::Holds82, "1756-RM003, \"String types\""),
+    real_to_integer: follows(RealToInteger::LowBits, "1756-RM003, \"Convert REAL to an integer\""),
+    sqrt_of_negative: follows(SqrtOfNegative::RootOfMagnitude, "1756-RM003, \"Square Root\""),
+    modulo_of_reals: follows(ModuloOfReals::Remainder, "1756-RM003N, p. 279, \"Modulo\""),
     ..IEC
 };
 
 const SIEMENS: Rules = Rules {
     shr_of_signed: follows(ShrOfSigned::Sign, "S7-1200 manual, \"SHR\""),
     integer_text: follows(IntegerText::SignAndDigits, "S7-1200 manual, table 8-33"),
+    real_and_bits: follows(RealAndBits::Bits, "S7-1200 manual, \"CONV\""),
+    date_as_number: follows(DateAsNumber::DaysSince1990, SIEMENS_DATES),
+    real_of_text: follows(RealOfText::FixedPoint, "S7-1200 manual, table 8-33"),
+    replace_before: follows(ReplaceBefore::Empty, "S7-1200 manual, 03/2014, table 8-66"),
     ..IEC
 };
 
@@ -287,6 +462,12 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.real_and_bits),
         row(|it| &it.default_string),
         row(|it| &it.integer_text),
+        row(|it| &it.date_as_number),
+        row(|it| &it.real_of_text),
+        row(|it| &it.replace_before),
+        row(|it| &it.sqrt_of_negative),
+        row(|it| &it.modulo_of_reals),
+        row(|it| &it.rotated_constant),
     ]
 }
 
@@ -301,4 +482,61 @@ fn row_of<T: Copy + 'static>(
 ) -> Row {
     let followed = Dialect::ALL.map(|it| of(it.rules())).map(|it| (words(it.choice), it.evidence));
     Row { rule, followed }
+}
+
+/// A rule of a system that its dialect does not follow: a program that has what uses it may compute otherwise there.
+#[derive(Clone, Copy, Debug)]
+pub struct NotFollowed {
+    pub dialect: Dialect,
+    /// What the system does.
+    pub what: &'static str,
+    pub evidence: &'static str,
+    pub uses: Use,
+}
+
+/// What a program has to have for a rule to matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    Type(Elementary),
+}
+
+impl Use {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Type(it) => it.name(),
+        }
+    }
+}
+
+/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
+pub const NOT_FOLLOWED: &[NotFollowed] = &[
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Time,
+        "32 bits of milliseconds without a sign: less than `T#0s` or more than `T#49d17h2m47s295ms` wraps",
+        "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"",
+    ),
+    not_followed(Dialect::Codesys, Elementary::Date, "32 bits of seconds since 1970: it ends in 2106", CODESYS_DATES),
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Dt,
+        "32 bits of seconds since 1970: it ends in 2106, and has no parts of a second",
+        CODESYS_DATES,
+    ),
+    not_followed(Dialect::Codesys, Elementary::Tod, "32 bits of milliseconds: it has no parts of one", CODESYS_DATES),
+    not_followed(
+        Dialect::Siemens,
+        Elementary::Time,
+        "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
+        SIEMENS_DATES,
+    ),
+    not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
+];
+
+const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
+
+const SIEMENS_DATES: &str = "S7-1200 manual V4.2, table 5-32";
+
+const fn not_followed(dialect: Dialect, ty: Elementary, what: &'static str, evidence: &'static str) -> NotFollowed {
+    NotFollowed { dialect, what, evidence, uses: Use::Type(ty) }
 }

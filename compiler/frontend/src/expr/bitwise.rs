@@ -37,6 +37,7 @@ impl<'s> Checker<'_, 's> {
     /// `NOT` of an operand as it is written.
     pub(super) fn complement(&mut self, operand: Operand, expected: Option<Type>, span: Span) -> Option<Operand> {
         match operand.ty() {
+            None if let Some(value) = self.complement_of_immediate(&operand, span) => Some(Operand::Integer(value)),
             Some(Type::Elementary(own)) if own.is_integer() && self.decl.dialect(span).has_bits_of_integers() => {
                 let value = self.bits_of(operand, computed_at(own), span)?;
                 let ty = value.ty;
@@ -48,6 +49,14 @@ impl<'s> Checker<'_, 's> {
                 self.not(value, span).map(Operand::Typed)
             }
         }
+    }
+
+    /// An immediate value is a DINT (1756-RM006K, p. 545), or a LINT where a DINT does not hold it.
+    fn complement_of_immediate(&self, operand: &Operand, span: Span) -> Option<i128> {
+        let Operand::Integer(value) = operand else { return None };
+        let of_integers = self.decl.dialect(span).has_bits_of_integers();
+        let types = [Elementary::Dint, Elementary::Lint];
+        types.into_iter().filter(|_| of_integers).find_map(|it| pattern(*value, it)).map(|it| !it)
     }
 
     pub(crate) fn not(&mut self, value: Expr, span: Span) -> Option<Expr> {

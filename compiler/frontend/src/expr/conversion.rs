@@ -5,7 +5,7 @@ use crate::dialect::rules::ToBool;
 use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Chars, Conversion, Elementary, Expr, Op, Type, Value};
-use staunch_runtime::time::SECOND;
+use staunch_runtime::time::{DAY, SECOND};
 use staunch_runtime::{Class, Time};
 
 impl<'s> Checker<'_, 's> {
@@ -79,20 +79,52 @@ impl<'s> Checker<'_, 's> {
                 self.as_time(nanoseconds, to, span)
             }
             (None, None) if to == Elementary::Bool => self.truth(value, from, span),
-            (None, None) => Some(self.convert(Conversion::Value, target, value)),
+            (None, None) if are_the_same_bits(from, to) && self.decl.dialect(span).rules().copies_bits() => {
+                Some(self.convert(Conversion::Bits, target, value))
+            }
+            (None, None) => Some(self.number_as(value, to, span)),
             (Some(unit), None) => {
+                let (unit, since) = self.counts_from(from, unit, span);
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+                let nanoseconds = self.from_epoch(Op::Sub, nanoseconds, since, span)?;
                 let count = self.scaled_by(Op::Div, nanoseconds, unit, to.is_real(), span)?;
                 Some(self.convert(Conversion::Value, target, count))
             }
             (None, Some(unit)) => {
-                let real = from.is_real();
+                let (unit, since) = self.counts_from(to, unit, span);
+                let real = from.is_real() && !self.decl.dialect(span).rules().counts_whole_units();
                 let wide = self.convert(Conversion::Value, if real { Type::LREAL } else { Type::LINT }, value);
                 let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
+                let count = self.from_epoch(Op::Add, count, since, span)?;
                 self.as_time(count, to, span)
             }
         }
+    }
+
+    /// What a number counts that becomes `ty`, and the point in time that it counts from.
+    fn counts_from(&self, ty: Elementary, unit: Time, span: Span) -> (Time, Time) {
+        let days = ty == Elementary::Date && self.decl.dialect(span).rules().counts_days();
+        if days { (DAY, staunch_runtime::time::date(1990, 1, 1)) } else { (unit, 0) }
+    }
+
+    fn from_epoch(&mut self, op: Op, value: Expr, by: Time, span: Span) -> Option<Expr> {
+        if by == 0 {
+            return Some(value);
+        }
+        let by = Expr::constant(Elementary::Lint, Value::I64(by), value.at);
+        self.apply(op, Type::LINT, vec![value, by], Type::LINT, span)
+    }
+
+    /// A number as one of another type. Of a real that an integer type does not hold, the dialect says what it becomes.
+    pub(super) fn number_as(&mut self, value: Expr, to: Elementary, span: Span) -> Expr {
+        let is_real = value.ty.elementary().is_some_and(Elementary::is_real);
+        let cut = is_real && to.is_integral() && to != Elementary::Bool;
+        let value = match cut && self.decl.dialect(span).rules().keeps_low_bits() {
+            true => self.convert(Conversion::Value, Type::LINT, value),
+            false => value,
+        };
+        self.convert(Conversion::Value, Type::Elementary(to), value)
     }
 
     /// A number as a BOOL, as the dialect's rule for its class says; a real is TRUE where it is not 0.
@@ -179,16 +211,26 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let to = Type::Elementary(to);
+        let low_bits = self.decl.dialect(name.span).rules().keeps_low_bits();
         let op = match how {
-            Rounding::ToZero => return Some(self.convert(Conversion::Truncate, to, value)),
+            Rounding::ToZero if low_bits => {
+                let whole = self.convert(Conversion::Truncate, Type::LINT, value);
+                return Some(self.convert(Conversion::Value, Type::Elementary(to), whole));
+            }
+            Rounding::ToZero => return Some(self.convert(Conversion::Truncate, Type::Elementary(to), value)),
             Rounding::ToEven => Op::Nearest,
             Rounding::Up => Op::Ceil,
             Rounding::Down => Op::Floor,
         };
         let whole = self.apply(op, from, vec![value], from, span)?;
-        Some(self.convert(Conversion::Value, to, whole))
+        Some(self.number_as(whole, to, span))
     }
+}
+
+/// A real and a bit string of its size.
+fn are_the_same_bits(from: Elementary, to: Elementary) -> bool {
+    let pairs = [(Elementary::Real, Elementary::Dword), (Elementary::Lreal, Elementary::Lword)];
+    pairs.iter().any(|it| *it == (from, to) || *it == (to, from))
 }
 
 /// Whether every value of the one is a value of the other, where a [`Time`] carries both.

@@ -369,15 +369,37 @@ impl<'s> Checker<'_, 's> {
     fn plain_arithmetic(&mut self, sides: Sides) -> Option<Operand> {
         let op = arithmetic_op(sides.op);
         let op_span = sides.op_span;
+        let of_reals = self.decl.dialect(op_span).rules().has_modulo_of_reals();
         let allowed: fn(Elementary, bool) -> bool = match sides.op {
-            BinaryOp::Mod => |ty, mixes| ty.is_integer() || (mixes && ty.is_bits() && ty != Elementary::Bool),
+            BinaryOp::Mod if !of_reals => {
+                |ty, mixes| ty.is_integer() || (mixes && ty.is_bits() && ty != Elementary::Bool)
+            }
             _ => |ty, mixes| ty.is_integer() || ty.is_real() || (mixes && ty.is_bits() && ty != Elementary::Bool),
         };
-        let wants =
-            if sides.op == BinaryOp::Mod { "both sides need to be integers" } else { "both sides need to be numbers" };
+        let wants = if sides.op == BinaryOp::Mod && !of_reals {
+            "both sides need to be integers"
+        } else {
+            "both sides need to be numbers"
+        };
         let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
-        let value = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        let value = match op == Op::Mod && ty.elementary().is_some_and(Elementary::is_real) {
+            true => self.remainder(ty, a, b, op_span)?,
+            false => self.apply(op, ty, vec![a, b], ty, op_span)?,
+        };
         Some(computed(value, own))
+    }
+
+    /// `a - TRUNC(a / b) * b`: MOD of reals (1756-RM003N, p. 279).
+    fn remainder(&mut self, ty: Type, mut a: Expr, mut b: Expr, span: Span) -> Option<Expr> {
+        for (name, side) in [("dividend", &mut a), ("divisor", &mut b)] {
+            if side.as_const().is_none() {
+                self.save(name, side);
+            }
+        }
+        let quotient = self.apply(Op::Div, ty, vec![a.clone(), b.clone()], ty, span)?;
+        let whole = self.apply(Op::Whole, ty, vec![quotient], ty, span)?;
+        let product = self.apply(Op::Mul, ty, vec![whole, b], ty, span)?;
+        self.apply(Op::Sub, ty, vec![a, product], ty, span)
     }
 
     fn add_times(&mut self, sides: Sides) -> Option<Expr> {

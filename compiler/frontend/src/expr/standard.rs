@@ -52,6 +52,8 @@ impl<'s> Checker<'_, 's> {
                 }
             }
             Meaning::Operation(op) => {
+                let is_turned = matches!(op, Op::Rol | Op::Ror);
+                let expected = self.least_bits(values[0]).filter(|_| is_turned).or(expected);
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 match op {
                     Op::SwapBytes => self.other_byte_order(resolved, name),
@@ -128,6 +130,19 @@ impl<'s> Checker<'_, 's> {
         Some(self.convert(Conversion::Same, Type::Elementary(ty), now))
     }
 
+    /// The smallest bit string that holds a literal, where the dialect turns so many bits of it.
+    fn least_bits(&self, value: &ast::Expr<'s>) -> Option<Type> {
+        let ast::ExprKind::Literal(ast::Literal { prefix: None, value: ast::LiteralValue::Integer { value: it, .. } }) =
+            &value.bare().kind
+        else {
+            return None;
+        };
+        let types = [Elementary::Byte, Elementary::Word, Elementary::Dword, Elementary::Lword];
+        let is_asked = self.decl.dialect(value.span).rules().rotates_constants_at_least_bits();
+        let holds = |ty: &Elementary| is_asked && ty.repr().integer(i128::from(*it)).is_some();
+        types.into_iter().find(holds).map(Type::Elementary)
+    }
+
     /// An operation of the table on operands of its type.
     pub(super) fn operation(
         &mut self,
@@ -138,6 +153,10 @@ impl<'s> Checker<'_, 's> {
         if op == Op::Abs {
             operands = operands.into_iter().map(|it| self.promote(it, span)).collect();
             ty = operands.first()?.ty;
+        }
+        if op == Op::Sqrt && self.decl.dialect(span).rules().takes_root_of_magnitude() {
+            operands =
+                operands.into_iter().map(|it| self.apply(Op::Abs, ty, vec![it], ty, span)).collect::<Option<_>>()?;
         }
         let value = match (op, ty) {
             (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
@@ -336,7 +355,15 @@ impl<'s> Checker<'_, 's> {
             None => Type::String(made_by(op, &ready)?),
         };
         let at = self.at(span);
-        self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)
+        let bounds = match ready.as_slice() {
+            [_, _, count, position] if op == TextOp::Replace => Some((count.clone(), position.clone())),
+            _ => None,
+        };
+        let text = self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)?;
+        match bounds.filter(|_| self.decl.dialect(span).rules().replaces_nothing_before()) {
+            Some((count, position)) => self.replaced(text, count, position, span),
+            None => Some(text),
+        }
     }
 
     fn concat(&mut self, operands: Vec<Expr>, span: Span) -> Option<Expr> {

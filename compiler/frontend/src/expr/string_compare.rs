@@ -35,25 +35,19 @@ impl Checker<'_, '_> {
         Some(Expr::load(chosen, self.at(span)))
     }
 
-    /// `LIMIT` of strings. Where MN lies after MX, a text before MN gives MN.
+    /// `LIMIT` of strings: `MIN(MAX(IN, MN), MX)`.
     pub(crate) fn limited_text(&mut self, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
         if self.choose_now(&texts) {
             let [min, value, max] = <[Expr; 3]>::try_from(texts).ok()?;
-            let below = self.is_so(Op::Lt, &value, &min, span);
-            let above = !below && self.is_so(Op::Gt, &value, &max, span);
-            let limited = if below { min } else { value };
-            return Some(Expr { ty, ..if above { max } else { limited } });
+            let raised = if self.is_so(Op::Lt, &value, &min, span) { min } else { value };
+            let above = self.is_so(Op::Gt, &raised, &max, span);
+            return Some(Expr { ty, ..if above { max } else { raised } });
         }
         let [min, value, max] = <[Expr; 3]>::try_from(self.texts_in_variables(ty, texts, span)).ok()?;
-        let at = self.at(span);
-        let below = self.compare_texts(Op::Lt, value.clone(), min.clone(), span)?;
-        let above = self.compare_texts(Op::Gt, value.clone(), max.clone(), span)?;
         let chosen = self.chosen_text(ty, value, span);
-        let set = |value: Expr| vec![Statement::assign(chosen.clone(), value, at)];
-        let otherwise =
-            vec![Statement::new(StatementKind::If { condition: above, then: set(max), otherwise: Vec::new() }, at)];
-        self.push(StatementKind::If { condition: below, then: set(min), otherwise }, span);
-        Some(Expr::load(chosen, at))
+        self.choose(&chosen, Op::Gt, min, span)?;
+        self.choose(&chosen, Op::Lt, max, span)?;
+        Some(Expr::load(chosen, self.at(span)))
     }
 
     /// A comparison of constants.

@@ -127,8 +127,11 @@ impl<'s> Checker<'_, 's> {
         if to.is_char() {
             return self.first_character(text, to, span);
         }
+        let is_fixed = self.decl.dialect(span).rules().reads_fixed_point();
         let (op, made) = match to {
             Elementary::Bool => (TextOp::ToBool, Elementary::Bool),
+            Elementary::Real if is_fixed => (TextOp::ToFixedReal, Elementary::Real),
+            Elementary::Lreal if is_fixed => (TextOp::ToFixedLreal, Elementary::Lreal),
             Elementary::Real => (TextOp::ToReal, Elementary::Real),
             Elementary::Lreal => (TextOp::ToLreal, Elementary::Lreal),
             Elementary::Ulint | Elementary::Lword => (TextOp::ToUlint, Elementary::Ulint),
@@ -154,9 +157,28 @@ impl<'s> Checker<'_, 's> {
         let above = self.apply(Op::Ge, Type::LINT, vec![number.clone(), least], Type::BOOL, span)?;
         let below = self.apply(Op::Le, Type::LINT, vec![number.clone(), most], Type::BOOL, span)?;
         let holds = self.apply(Op::And, Type::BOOL, vec![above, below], Type::BOOL, span)?;
+        self.zero_unless(holds, number, span)
+    }
+
+    /// The number where the condition holds, else 0.
+    fn zero_unless(&mut self, holds: Expr, number: Expr, span: Span) -> Option<Expr> {
         let byte = self.convert(Conversion::Value, Type::Elementary(Elementary::Byte), holds);
         let holds = self.convert(Conversion::Value, Type::LINT, byte);
         self.apply(Op::Mul, Type::LINT, vec![number, holds], Type::LINT, span)
+    }
+
+    /// What REPLACE gives: nothing where it is to begin before the first character, or to replace fewer than 0.
+    pub(super) fn replaced(&mut self, text: Expr, count: Expr, position: Expr, span: Span) -> Option<Expr> {
+        let (ty, at) = (text.ty, self.at(span));
+        let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
+        let begins = self.apply(Op::Ge, Type::LINT, vec![position, lint(1)], Type::BOOL, span)?;
+        let counts = self.apply(Op::Ge, Type::LINT, vec![count, lint(0)], Type::BOOL, span)?;
+        let holds = self.apply(Op::And, Type::BOOL, vec![begins, counts], Type::BOOL, span)?;
+        if holds.as_const() == Some(Value::Bool(true)) {
+            return Some(text);
+        }
+        let length = self.zero_unless(holds, lint(MAX_CAPACITY.into()), span)?;
+        self.text_function_of(TextOp::Left, ty, vec![text, length], span)
     }
 
     fn first_character(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {

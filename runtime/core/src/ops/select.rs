@@ -17,25 +17,19 @@ pub fn min<T: Scalar>(a: T, b: T) -> T {
     if b < a { b } else { a }
 }
 
-/// `value`, or the bound that it passes. The lower bound is looked at first: with crossed bounds
-/// a value below `min` gives `min`, any other gives `max`. A NaN value stays, a NaN bound does
-/// not bind.
+/// `MIN(MAX(value, min), max)` (IEC 61131-3, table 32): with crossed bounds the result is `max`. A NaN value stays,
+/// a NaN bound does not bind.
 ///
 /// ```
 /// use staunch_runtime::ops::limit;
 /// assert_eq!(limit(0, 5, 3), 3);
-/// assert_eq!(limit(10, 5, 3), 10);
+/// assert_eq!(limit(10, 5, 3), 3);
 /// assert_eq!(limit(10, 12, 3), 3);
 /// ```
 #[inline]
 pub fn limit<T: Scalar>(min: T, value: T, max: T) -> T {
-    if value < min {
-        min
-    } else if value > max {
-        max
-    } else {
-        value
-    }
+    let raised = if value < min { min } else { value };
+    if raised > max { max } else { raised }
 }
 
 /// `SEL`: `in0` when `g` is FALSE, `in1` when it is TRUE. Both have been evaluated.

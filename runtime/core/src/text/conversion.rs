@@ -109,6 +109,24 @@ pub fn from_lreal(value: f64, out: &mut Destination<'_>) {
     real(value, LREAL, out);
 }
 
+/// The REAL that the text spells without an exponent; commas are passed over, as S7 does it.
+///
+/// ```
+/// use staunch_runtime::text::to_fixed_real;
+/// assert_eq!(to_fixed_real(b"1.23E-4"), 1.23);
+/// assert_eq!(to_fixed_real(b"12,345.67"), 12345.67);
+/// ```
+#[inline]
+pub fn to_fixed_real(text: &[u8]) -> f32 {
+    fixed_number(text, REAL) as f32
+}
+
+/// As [`to_fixed_real`], the LREAL.
+#[inline]
+pub fn to_fixed_lreal(text: &[u8]) -> f64 {
+    fixed_number(text, LREAL)
+}
+
 /// A value of the type that is `kind`-th among [`Elementary::ALL`], as its literal; none of a TIME is
 /// `T#0ms`, as CODESYS has it.
 #[inline]
@@ -249,9 +267,9 @@ fn real(value: f64, format: Format, out: &mut Destination<'_>) {
 fn number(text: &[u8], format: Format) -> f64 {
     let (is_negative, text) = sign(without_spaces(text));
     let mut digits = Significant::default();
-    let mut rest = digits.take(text, false);
+    let mut rest = digits.take(text, false, b'_');
     if let Some((b'.', fraction)) = rest.split_first() {
-        rest = digits.take(fraction, true);
+        rest = digits.take(fraction, true, b'_');
     }
     if let Some((b'e' | b'E', exponent)) = rest.split_first() {
         let (is_below, exponent) = sign(exponent);
@@ -261,6 +279,17 @@ fn number(text: &[u8], format: Format) -> f64 {
         }
         let power = power.min(100_000);
         digits.exponent = digits.exponent.saturating_add(if is_below { -power } else { power });
+    }
+    let value = decimal::nearest(digits.number, digits.exponent, format);
+    if is_negative { -value } else { value }
+}
+
+/// A number with a fraction and commas, as far as it goes.
+fn fixed_number(text: &[u8], format: Format) -> f64 {
+    let (is_negative, text) = sign(without_spaces(text));
+    let mut digits = Significant::default();
+    if let Some((b'.', fraction)) = digits.take(text, false, b',').split_first() {
+        digits.take(fraction, true, b',');
     }
     let value = decimal::nearest(digits.number, digits.exponent, format);
     if is_negative { -value } else { value }
@@ -278,14 +307,14 @@ impl Significant {
     /// More than lie between two reals and the half way between them need, of numbers as people write them.
     const MOST: u32 = 36;
 
-    /// Takes digits from the start of `text`; the rest of it.
-    fn take<'t>(&mut self, text: &'t [u8], is_fraction: bool) -> &'t [u8] {
+    /// Takes digits from the start of `text`, without the character that is `passed` over; the rest of it.
+    fn take<'t>(&mut self, text: &'t [u8], is_fraction: bool, passed: u8) -> &'t [u8] {
         let mut rest = text;
         while let Some((byte, after)) = rest.split_first()
-            && (byte.is_ascii_digit() || *byte == b'_')
+            && (byte.is_ascii_digit() || *byte == passed)
         {
             rest = after;
-            if *byte == b'_' {
+            if *byte == passed {
                 continue;
             }
             let is_kept = self.count < Self::MOST;
