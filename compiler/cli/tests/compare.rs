@@ -482,12 +482,18 @@ fn both_systems_are_drawn_one_above_the_other() {
 
 #[test]
 fn accepted_findings_do_not_fail() {
-    let all = written("accepted.txt", "parts 1: the barrier is never held\nparts 2: nobody reads the count\n");
+    let all = written(
+        "accepted.txt",
+        "parts 1: the barrier is never held\nparts 2: nobody reads the count\nfull output: it is not wired\n",
+    );
     let output = run(&format!("held.st --from iec --to cscape --accept {}", all.display()));
     let out = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{out}");
     assert!(out.contains("(accepted)"), "{out}");
-    let stale = written("stale.txt", "parts 1: never held\nparts 2: not read\nparts 4: no CTD here\n");
+    let stale = written(
+        "stale.txt",
+        "parts 1: never held\nparts 2: not read\nparts 4: no CTD here\nfull output: it is not wired\n",
+    );
     let output = run(&format!("held.st --from iec --to cscape --accept {}", stale.display()));
     assert_eq!(output.status.code(), Some(0));
     let said = text(&output.stderr);

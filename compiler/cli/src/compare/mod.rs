@@ -101,7 +101,7 @@ fn side_by_side(report: &Report, [program, moved]: [Program; 2], renamed: &[Opti
     };
     let rest = match &verdict {
         Verdict::Differs { .. } if args.stimulus.is_none() && accepted.accepts_any() && !findings.fail(&accepted) => {
-            world.tolerance = Some(Tolerance::of(&pair, &world.computed, &uses, &accepted));
+            world.tolerance = Some(Tolerance::of(&pair, &world.computed, &uses, &accepted, !only.is_empty()));
             Some(judge::beyond_accepted(&mut pair, &world, args, &mut findings))
         }
         Verdict::Differs { .. } | Verdict::Equal(_) | Verdict::NotFound { .. } => None,

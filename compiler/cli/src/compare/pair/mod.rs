@@ -318,6 +318,11 @@ impl Pair {
         self.compared.iter().copied().filter(|it| passing.remains(*it, &self.passed)).collect()
     }
 
+    /// Of these, the outputs that may follow from accepted findings which have been seen.
+    pub fn following(&self, passing: &Passing, found: &[Matched]) -> Vec<Matched> {
+        found.iter().copied().filter(|it| passing.keeps(*it, &self.passed)).collect()
+    }
+
     /// Whether these do not show the same.
     pub fn differs_now(&self, matched: Matched) -> bool {
         !self.equal(matched, self.states())
