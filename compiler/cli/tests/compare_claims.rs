@@ -69,3 +69,67 @@ fn what_is_named_and_what_is_wired_are_outputs() {
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("Not accepted: `motor output`."), "{text}");
 }
+
+/// A program with a table that it only reads: `over` follows from the count alone where an element is 7.
+fn table(declared: &str, condition: &str) -> String {
+    format!(
+        "PROGRAM p
+VAR_INPUT part : BOOL; size : INT(0..1000); END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; END_VAR
+{declared}
+c(CU := part, R := c.CV > 4, PV := 2);
+over := c.CV > 2 AND {condition};
+END_PROGRAM
+"
+    )
+}
+
+const TO_OPENPLC: [&str; 6] = ["--from", "iec", "--to", "openplc", "--vars", "over"];
+
+/// Nothing writes the table, so no element is 7, also not one that starts at 0; it can be assumed to be written.
+#[test]
+fn a_table_that_is_only_read_is_no_input() {
+    let tables = [
+        ("array", "VAR t : ARRAY[0..3] OF INT := [0, 10, 20, 30]; END_VAR", "t[size MOD 4] = 7"),
+        ("zeros", "VAR t : ARRAY[0..3] OF INT; END_VAR", "t[size MOD 4] = 7"),
+        ("members", "VAR t : STRUCT a, b : INT := 3; z : INT; END_STRUCT; END_VAR", "t.z = 7"),
+        ("rows", "VAR t : ARRAY[0..3, 0..1] OF INT := [0, 10, 20, 30, 0]; END_VAR", "t[size MOD 4, 0] = 7"),
+    ];
+    for (name, declared, condition) in tables {
+        let (code, text) = compare(name, &table(declared, condition), &TO_OPENPLC);
+        assert!(text.contains("nothing writes t"), "{name}: {text}");
+        assert!(!text.contains("differ after"), "{name}: {text}");
+        assert_ne!(code, Some(1), "{name}: {text}");
+    }
+    let source = table(tables[0].1, "t[0] = 7");
+    let (code, text) = compare("not_assumed", &source, &TO_OPENPLC);
+    assert_eq!(code, Some(0), "{text}");
+    let assumed = written("assumed.txt", "t[0] 0..10\n");
+    let (code, text) = compare("assumed", &source, &[&TO_OPENPLC[..], &["--assume", &assumed]].concat());
+    assert_eq!(code, Some(1), "{text}");
+    // What is RETAIN, or has an address, is there for the world outside to write.
+    for declared in ["VAR RETAIN t : ARRAY[0..1] OF INT; END_VAR", "VAR t AT %MW0 : ARRAY[0..1] OF INT; END_VAR"] {
+        let (code, text) = compare("from_outside", &table(declared, "t[0] = 7"), &TO_OPENPLC);
+        assert_eq!(code, Some(1), "{text}");
+    }
+    let written = table(tables[0].1, "t[0] = 7").replace("over :=", "IF size = 9 THEN t[0] := 7; END_IF over :=");
+    let (code, text) = compare("written", &written, &TO_OPENPLC);
+    assert_eq!(code, Some(1), "{text}");
+}
+
+/// An index is tried where the elements change, which is all that it decides.
+#[test]
+fn a_long_table_is_looked_up_where_it_changes() {
+    let of = |value: u32| {
+        let declared = format!("VAR t : ARRAY[0..1000] OF INT := [613(0), {value}, 387(0)]; END_VAR");
+        table(&declared, "t[size] = 7")
+    };
+    let started = std::time::Instant::now();
+    let (code, text) = compare("long", &of(7), &TO_OPENPLC);
+    assert_eq!(code, Some(1), "{text}");
+    let passed = started.elapsed();
+    assert!(passed.as_secs() < 4, "a look-up of 1,000 elements took {passed:?}");
+    let (code, text) = compare("long_equal", &of(8), &TO_OPENPLC);
+    assert_eq!(code, Some(0), "{text}");
+}
