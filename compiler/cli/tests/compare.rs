@@ -17,6 +17,22 @@ fn run(arguments: &str) -> Output {
     command.output().expect("the command starts")
 }
 
+/// Of programs in the folder, where the project decides what CODESYS leaves open.
+fn decided(arguments: &str) -> Output {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_decided");
+    static WRITTEN: std::sync::Once = std::sync::Once::new();
+    WRITTEN.call_once(|| {
+        std::fs::create_dir_all(&folder).expect("a folder");
+        std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\n").expect("a project file");
+        for name in ["names.st", "no_run.txt"] {
+            std::fs::copy(self::folder().join(name), folder.join(name)).expect("a copy");
+        }
+    });
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    command.arg("compare").args(arguments.split_whitespace()).current_dir(folder).env("NO_COLOR", "1");
+    command.output().expect("the command starts")
+}
+
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
@@ -121,15 +137,15 @@ fn names_that_change_are_lints_and_not_differences() {
     let lints = text(&output.stderr);
     assert_eq!(lints.matches("warning[W0609]").count(), 6, "{lints}");
     assert!(lints.contains("write `RESET`, or give the inputs by position"), "{lints}");
-    let few = run("names.st --from iec --to codesys --assume no_run.txt --budget 2000");
+    let few = decided("names.st --from iec --to codesys --assume no_run.txt --budget 2000");
     assert_eq!(few.status.code(), Some(4), "{}", text(&few.stdout));
-    let denied = run("names.st --from iec --to codesys --assume no_run.txt --budget 2000 -D W0609");
+    let denied = decided("names.st --from iec --to codesys --assume no_run.txt --budget 2000 -D W0609");
     assert_eq!(denied.status.code(), Some(1));
 }
 
 #[test]
 fn what_is_not_found_is_not_ruled_out() {
-    let output = run("names.st --from iec --to codesys --assume no_run.txt --budget 2000");
+    let output = decided("names.st --from iec --to codesys --assume no_run.txt --budget 2000");
     let out = text(&output.stdout);
     assert_eq!(output.status.code(), Some(4), "{out}");
     assert!(
@@ -137,8 +153,9 @@ fn what_is_not_found_is_not_ruled_out() {
         "{out}"
     );
     assert!(out.contains("Not tried: longer sequences; a larger --budget tries more of them.\n"), "{out}");
-    let object =
-        text(&run("names.st --from iec --to codesys --assume no_run.txt --budget 2000 --message-format json").stdout);
+    let object = text(
+        &decided("names.st --from iec --to codesys --assume no_run.txt --budget 2000 --message-format json").stdout,
+    );
     let last = object.lines().last().unwrap_or_default();
     assert!(last.contains(r#""reason":"compare","from":"iec","to":"codesys","verdict":"not found""#), "{object}");
 }
@@ -829,7 +846,7 @@ fn what_is_compared_is_there_on_both_sides() {
     // A name may begin with the PROGRAM, as it may for a run; what one program alone has otherwise is said.
     let output = run(&format!("{} --vars p.full,c.CV", against(&one)));
     assert_ne!(output.status.code(), Some(2), "{}", text(&output.stderr));
-    let output = run(&format!("{} --assume no_run.txt", against(&more)));
+    let output = run(&format!("{} --assume no_run.txt --vars full", against(&more)));
     assert!(
         text(&output.stdout).contains("not compared, since one program alone has it: n"),
         "{}",

@@ -133,3 +133,63 @@ fn a_long_table_is_looked_up_where_it_changes() {
     let (code, text) = compare("long_equal", &of(8), &TO_OPENPLC);
     assert_eq!(code, Some(0), "{text}");
 }
+
+/// The count passes PV on IEC; on CODESYS it does by some of its documents, and stops by others (Beckhoff's older page of
+/// Tc2_Standard: "CV is increased by 1 as long as CV is less than PV").
+#[test]
+fn what_a_vendor_leaves_open_is_tried_both_ways() {
+    let source = |reset: &str| {
+        format!(
+            "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(s, {reset}, 3);
+over := c.CV > 3;
+END_PROGRAM
+"
+        )
+    };
+    let arguments = |from: &'static str, to: &'static str| ["--from", from, "--to", to, "--vars", "over"];
+    let passes = source("c.CV > 5");
+    for (from, to, shown, other) in [
+        ("iec", "codesys", "`ctu-stop-at-pv = true`", "With `ctu-stop-at-pv = false`, the two are equal."),
+        ("codesys", "openplc", "`ctu-stop-at-pv = false`", "With `ctu-stop-at-pv = true`, the two are equal."),
+    ] {
+        let no_run = written("no_run.txt", "no run\n");
+        let (code, text) = compare("open", &passes, &[&arguments(from, to)[..], &["--assume", &no_run]].concat());
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(&format!("The verdict above is with {shown}. {other}")), "{text}");
+    }
+    // What never reaches its preset is the same either way, and that is said.
+    let below = source("c.CV > 1");
+    let no_run = written("no_run.txt", "no run\n");
+    let arguments = [&arguments("iec", "codesys")[..], &["--assume", &no_run]].concat();
+    let (code, text) = compare("open_below", &below, &arguments);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("With `ctu-stop-at-pv = true`, the two are equal."), "{text}");
+    let (_, json) = compare("open_json", &below, &[&arguments[..], &["--message-format", "json"]].concat());
+    let settings = "\"settings\":{\"ctu-stop-at-pv\":false},\"other_settings\":[{\"settings\":{\"ctu-stop-at-pv\":true},\"verdict\":\"equal\"}]";
+    assert!(json.contains(settings), "{json}");
+}
+
+/// A project that has asked its vendor decides it.
+#[test]
+fn what_the_project_decides_is_the_verdict() {
+    let folder = folder().join("decided");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\n").expect("a project file");
+    let source = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(s, c.CV > 5, 3);
+over := c.CV > 3;
+END_PROGRAM
+";
+    let arguments = ["--from", "iec", "--to", "codesys", "--vars", "over", "--assume"];
+    let no_run = written("never_run.txt", "no run\n");
+    let (code, text) = compare("decided/p", source, &[&arguments[..], &[no_run.as_str()]].concat());
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("With `ctu-stop-at-pv = true`, the two differ after 7 scans."), "{text}");
+}
