@@ -193,3 +193,95 @@ END_PROGRAM
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("With `ctu-stop-at-pv = true`, the two differ after 7 scans."), "{text}");
 }
+
+/// Both systems keep a RETAIN count in every event: a count below 0 is trap 3 there, whatever happens before it.
+#[test]
+fn a_restart_is_blamed_where_both_keep_nothing_alike() {
+    let source = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR RETAIN c : CTD; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+c(s, l, 3);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let accepted = written("below.txt", "c 3: the count below 0 is not used\n");
+    let (code, text) = compare("kept", source, &["--from", "iec", "--to", "codesys", "--accept", &accepted]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(!text.contains("reachable after 2 scans: trap 11"), "{text}");
+    assert!(text.contains("Not accepted: `o output`."), "{text}");
+}
+
+/// `lamp` follows from the second counter; the first parts before it, and decides nothing of it.
+#[test]
+fn the_counter_that_is_blamed_decides_the_difference() {
+    for input in ["s", "s OR c.CV > 90"] {
+        let source = format!(
+            "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c, d : CTU; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+c(CU := s, R := r, PV := 2);
+d(CU := {input}, R := r, PV := 3);
+lamp := d.CV > 5;
+END_PROGRAM
+"
+        );
+        let (code, text) = compare("blame", &source, &["--from", "iec", "--to", "openplc", "--vars", "lamp"]);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("Trap 15 (`d`)"), "{text}");
+    }
+}
+
+/// No flag of Logix is Q of a CTD, which is TRUE while nothing is left: DN is TRUE while ACC >= PRE (1756-RM003, "CTD").
+#[test]
+fn the_port_of_a_ctd_asks_for_what_is_left() {
+    let source = "PROGRAM p
+VAR_INPUT s, ld : BOOL; END_VAR
+VAR RETAIN k : CTD; e : R_TRIG; END_VAR
+VAR_OUTPUT empty, some : BOOL; END_VAR
+e(CLK := s); k(CD := e.Q, LD := ld, PV := 3, Q => empty);
+some := NOT k.Q;
+END_PROGRAM
+";
+    let file = folder().join("port.st").display().to_string();
+    let arguments = ["--from", "iec", "--to", "logix", "--vars", "empty,some", "--write", &file];
+    let (_, text) = compare("ctd", source, &arguments);
+    assert!(!text.contains("Trap 4"), "{text}");
+    let port = std::fs::read_to_string(&file).expect("it is written");
+    assert!(port.contains("empty := k.ACC <= 0") && port.contains("some := NOT (k.ACC <= 0);"), "{port}");
+}
+
+/// What is written for Logix says which of its lines are rungs in Studio 5000: CTU, CTD and RES are there in ladder only.
+#[test]
+fn what_is_written_says_what_is_ladder() {
+    let source = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(CU := s, R := r, PV := 3);
+END_PROGRAM
+";
+    let path = written("ladder.st", source);
+    let file = folder().join("written.st").display().to_string();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    command.args(["compare", &path, "--from", "iec", "--to", "logix", "--write", &file]);
+    let output = command.output().expect("it starts");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("Studio 5000 has CTU and RES in ladder only") && said.contains("(line 4)"), "{said}");
+}
+
+/// A CTUD on Logix is no CTU, so that advice for one is not given for the other.
+#[test]
+fn advice_is_for_the_kind_of_counter() {
+    let source = "PROGRAM p
+VAR_INPUT up, down, r : BOOL; END_VAR
+VAR c : CTUD; END_VAR
+VAR_OUTPUT full : BOOL; END_VAR
+c(CU := up, CD := down, R := r, LD := FALSE, PV := 5); full := c.QU;
+END_PROGRAM
+";
+    let (code, text) = compare("both_ways", source, &["--from", "iec", "--to", "logix"]);
+    assert_eq!(code, Some(1), "{text}");
+    let advice = text.lines().find(|it| it.starts_with("What to do: ")).unwrap_or_default();
+    assert!(advice.contains("CTUD(c)") && !advice.contains("CTU(c"), "{text}");
+}

@@ -120,9 +120,9 @@ impl Report<'_> {
     fn difference(&self, pair: &Pair, rows: &[Row], shortest: bool, cause: &Cause) -> String {
         let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
         let sentence = cause.pitfall.map_or("null".to_owned(), |it| quoted(it.sentence()));
-        let advice = cause
-            .pitfall
-            .map_or("null".to_owned(), |it| quoted(&it.advice(self.args.from.dialect, self.args.to.dialect)));
+        let advice = cause.pitfall.map_or("null".to_owned(), |it| {
+            quoted(&it.advice(self.args.from.dialect, self.args.to.dialect, cause.form(pair)))
+        });
         let counter = cause.counter.as_deref().map_or("null".to_owned(), quoted);
         let variables: Vec<_> = differences.iter().map(|it| quoted(pair.path(*it))).collect();
         let shown = &differences[..differences.len().min(SHOWN)];
