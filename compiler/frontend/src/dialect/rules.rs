@@ -3,6 +3,7 @@
 //! is in the runtime. `docs/dialects.md` has the same table, which a test holds equal.
 
 use super::Dialect;
+use staunch_runtime::Elementary;
 
 /// How one dialect computes.
 #[derive(Debug)]
@@ -301,4 +302,61 @@ fn row_of<T: Copy + 'static>(
 ) -> Row {
     let followed = Dialect::ALL.map(|it| of(it.rules())).map(|it| (words(it.choice), it.evidence));
     Row { rule, followed }
+}
+
+/// A rule of a system that its dialect does not follow: a program that has what uses it may compute otherwise there.
+#[derive(Clone, Copy, Debug)]
+pub struct NotFollowed {
+    pub dialect: Dialect,
+    /// What the system does.
+    pub what: &'static str,
+    pub evidence: &'static str,
+    pub uses: Use,
+}
+
+/// What a program has to have for a rule to matter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    Type(Elementary),
+}
+
+impl Use {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Type(it) => it.name(),
+        }
+    }
+}
+
+/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
+pub const NOT_FOLLOWED: &[NotFollowed] = &[
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Time,
+        "32 bits of milliseconds without a sign: less than `T#0s` or more than `T#49d17h2m47s295ms` wraps",
+        "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"",
+    ),
+    not_followed(Dialect::Codesys, Elementary::Date, "32 bits of seconds since 1970: it ends in 2106", CODESYS_DATES),
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Dt,
+        "32 bits of seconds since 1970: it ends in 2106, and has no parts of a second",
+        CODESYS_DATES,
+    ),
+    not_followed(Dialect::Codesys, Elementary::Tod, "32 bits of milliseconds: it has no parts of one", CODESYS_DATES),
+    not_followed(
+        Dialect::Siemens,
+        Elementary::Time,
+        "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
+        SIEMENS_DATES,
+    ),
+    not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
+];
+
+const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
+
+const SIEMENS_DATES: &str = "S7-1200 manual V4.2, table 5-32";
+
+const fn not_followed(dialect: Dialect, ty: Elementary, what: &'static str, evidence: &'static str) -> NotFollowed {
+    NotFollowed { dialect, what, evidence, uses: Use::Type(ty) }
 }
