@@ -66,6 +66,11 @@ impl Project {
         shown(&self.folder.join("staunch.toml"))
     }
 
+    /// Whether the file has this setting.
+    pub fn has(&self, key: &str) -> bool {
+        line_of(&self.text, key, None).is_some()
+    }
+
     /// The file and the line of a setting, or of a text in it.
     pub fn place(&self, key: &str, value: Option<&str>) -> String {
         line_of(&self.text, key, value).map_or_else(|| self.file(), |line| format!("{}:{line}", self.file()))

@@ -164,6 +164,27 @@ impl Session {
         self.beside(self.sources.clone(), compilation, compile_time, &self.diagnostics)
     }
 
+    /// The program of these sources with some options set, of which nothing is said: for this system, or as it moves to
+    /// another.
+    pub fn with_options(
+        &self,
+        sources: &Sources,
+        to: Option<Dialect>,
+        set: impl Fn(Options) -> Options,
+    ) -> Result<Option<Program>, String> {
+        let from = set(options(&self.common, &self.project)?);
+        let options = match to {
+            Some(to) => Options { dialect: to, moved_from: Some(from.dialect), ..from },
+            None => from,
+        };
+        Ok(staunch_frontend::compile(sources, &options).program)
+    }
+
+    /// Whether an option is on, by the project file.
+    pub fn is_on(&self, option: staunch_runtime::BlockOption) -> Result<bool, String> {
+        Ok(options(&self.common, &self.project)?.is_on(option))
+    }
+
     /// What a text of the other system's is rejected for: without what a move excuses.
     pub fn errors_of(&self, to: Dialect, sources: &Sources) -> Result<Vec<Diagnostic>, String> {
         let options = Options { dialect: to, ..options(&self.common, &self.project)? };

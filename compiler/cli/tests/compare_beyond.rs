@@ -273,7 +273,7 @@ c(s, FALSE, 3); y := CONCAT(y, 'aaaaaaaaaa'); q := LEN(y) > 90;",
     let (code, text) = compare(&text_apart, "iec", "cscape", &["--accept", &traps]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("`y` (width, "), "{text}");
-    let all = accept("traps_and_width", "* 1: ok\n* 2: ok\ny width: never so long\n");
+    let all = accept("traps_and_width", "* 1: ok\n* 2: ok\ny width: never so long\nq output: it is not wired\n");
     let (code, text) = compare(&text_apart, "iec", "cscape", &["--accept", &all]);
     assert_eq!(code, Some(0), "{text}");
     // The programs themselves are not the same, where no counter has parted.
@@ -317,12 +317,13 @@ fn what_is_declared_with_what_is_accepted_is_not() {
         ),
     );
     let accept = folder().join("beside.txt");
-    std::fs::write(&accept, "c[1] 15: nobody reads it\n").expect("a file");
+    std::fs::write(&accept, "c[1] 15: nobody reads it\nover output: it is not wired\n").expect("a file");
     let arguments = ["--accept", &accept.display().to_string()];
     let (code, text) = compare(&path, "iec", "openplc", &arguments);
     assert_eq!(code, Some(4), "{text}");
     assert!(text.contains("what c[2] decides, which is declared with what is accepted"), "{text}");
-    std::fs::write(&accept, "* 15: nobody reads it\n").expect("a file");
+    std::fs::write(&accept, "* 15: nobody reads it\nover output: it is not wired\nalarm output: nor is this\n")
+        .expect("a file");
     let (code, text) = compare(&path, "iec", "openplc", &arguments);
     assert_eq!(code, Some(0), "{text}");
 }

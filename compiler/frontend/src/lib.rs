@@ -44,7 +44,7 @@ pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severi
 pub use dialect::{Dialect, rules};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
-pub use options::Options;
+pub use options::{OPEN_OPTIONS, OpenOption, Options};
 pub use source::{Source, Sources, Span};
 pub use syntax::{parse, parse_file};
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};

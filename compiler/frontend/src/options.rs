@@ -1,6 +1,8 @@
 //! How a program is read.
 
 use crate::dialect::Dialect;
+use staunch_ir::BlockId;
+use staunch_runtime::{BLOCKS, BlockOption};
 
 /// How to read the sources.
 #[derive(Clone, Debug, Default)]
@@ -25,9 +27,59 @@ pub struct Options {
 }
 
 impl Options {
-    pub(crate) fn is_on(&self, option: staunch_runtime::BlockOption) -> bool {
+    pub fn is_on(&self, option: BlockOption) -> bool {
         match option {
-            staunch_runtime::BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
+            BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
+        }
+    }
+
+    /// The same with an option set.
+    #[must_use]
+    pub fn with(self, option: BlockOption, is_on: bool) -> Self {
+        match option {
+            BlockOption::CtuStopAtPv => Self { ctu_stop_at_pv: is_on, ..self },
+        }
+    }
+}
+
+/// What a vendor's documents leave open about its blocks, so that a program that uses one of them may do either.
+#[derive(Debug)]
+pub struct OpenOption {
+    pub option: BlockOption,
+    /// In `staunch.toml`.
+    pub name: &'static str,
+    /// What is left open, and by whom, as a sentence.
+    pub question: &'static str,
+    /// How it is written there while it is off, and on.
+    pub settings: [&'static str; 2],
+}
+
+/// All of them, one row each.
+pub const OPEN_OPTIONS: &[OpenOption] = &[OpenOption {
+    option: BlockOption::CtuStopAtPv,
+    name: "ctu-stop-at-pv",
+    question: "The documents of CODESYS and TwinCAT disagree on whether CTU and LCTU stop at PV.",
+    settings: ["false", "true"],
+}];
+
+impl OpenOption {
+    /// Whether the option decides what a block does: by its name, or because it stands for that block.
+    pub fn decides(&self, block: BlockId) -> bool {
+        let info = block.info();
+        let replaces = |of: &str| of == info.name;
+        let is_row = |it: &&staunch_runtime::BlockInfo| {
+            let row = it.facts.option.filter(|it| it.option == self.option);
+            it.family == info.family && row.is_some_and(|row| replaces(row.of) || it.name == info.name)
+        };
+        BLOCKS.iter().any(|it| is_row(&it))
+    }
+
+    /// As a line of `staunch.toml`.
+    pub fn line(&self, is_on: bool) -> String {
+        let setting = self.settings[usize::from(is_on)];
+        match setting {
+            "false" | "true" => format!("{} = {setting}", self.name),
+            _ => format!("{} = \"{setting}\"", self.name),
         }
     }
 }

@@ -19,6 +19,8 @@ mod findings;
 
 mod verdict;
 
+mod variants;
+
 mod report;
 
 use crate::args::{Common, Compare, Files, MessageFormat};
@@ -35,6 +37,7 @@ use search::tolerance::Tolerance;
 use search::world::World;
 use staunch_frontend::Dialect;
 use staunch_ir::Program;
+use variants::{Other, Variant};
 use verdict::{Judged, Verdict, judge};
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
@@ -76,16 +79,73 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
         let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
         migrated::write(&from, path, sources, &to.renamed, args.to.dialect)?;
     }
-    side_by_side(&report, [program, moved], &renamed)
+    let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
+    let own = side_by_side(&report, [program, moved], &renamed)?;
+    each_variant(&report, own, &renamed, |variant| {
+        variant.programs(&from, (sources, args.to.dialect), args.program.as_deref())
+    })
+}
+
+/// Both systems' programs side by side, and what that came to.
+struct Compared {
+    pair: Pair,
+    world: World,
+    findings: Findings,
+    accepted: Accepted,
+    verdict: Verdict,
+    /// Beyond what is accepted.
+    rest: Option<Verdict>,
+}
+
+impl Compared {
+    fn weight(&self) -> variants::Weight {
+        variants::weight(&self.verdict, self.rest.as_ref())
+    }
+}
+
+/// Shows the variant that the project file decides, or else the one that asks for the most; and what the others came to.
+fn each_variant(
+    report: &Report,
+    own: Compared,
+    renamed: &[Option<String>],
+    programs: impl Fn(&Variant) -> Result<Option<[Program; 2]>, String>,
+) -> Result<u8, String> {
+    let variant = Variant::own(report.session, &own.pair)?;
+    let mut others = Vec::new();
+    let (mut shown, mut of) = (own, variant.clone());
+    for variant in variant.others() {
+        let Some(programs) = programs(&variant)? else {
+            others.push(Other { variant, verdict: "rejected", scans: None });
+            continue;
+        };
+        let next = side_by_side(report, programs, renamed)?;
+        let is_open = !variant.is_decided(&report.session.project);
+        let (next, variant) = match is_open && next.weight() > shown.weight() {
+            true => (std::mem::replace(&mut shown, next), std::mem::replace(&mut of, variant)),
+            false => (next, variant),
+        };
+        others.push(Other::of(variant, &next.verdict, next.rest.as_ref()));
+    }
+    let Compared { pair, world, findings, accepted, verdict, rest } = &mut shown;
+    if let (Some(path), Verdict::Differs { rows, trace, .. }) = (report.args.picture(), &*verdict) {
+        picture::draw(pair, world, report.args, path, (rows, trace.as_ref()))?;
+    }
+    let judged = Judged { verdict, rest: rest.as_ref(), variant: &of, others: &others };
+    report.print(pair, world, &judged, findings, accepted)
 }
 
 /// Runs both systems' programs.
-fn side_by_side(report: &Report, [program, moved]: [Program; 2], renamed: &[Option<String>]) -> Result<u8, String> {
+fn side_by_side(
+    report: &Report,
+    [program, moved]: [Program; 2],
+    renamed: &[Option<String>],
+) -> Result<Compared, String> {
     let args = report.args;
     let cycle = run::cycle(report.session, args.cycle.as_deref())?;
     let same_program = is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
+    pair.is_ported = !report.notes.is_empty();
     let mut world = World::of(&mut pair, args)?;
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
@@ -101,7 +161,8 @@ fn side_by_side(report: &Report, [program, moved]: [Program; 2], renamed: &[Opti
     };
     let rest = match &verdict {
         Verdict::Differs { .. } if args.stimulus.is_none() && accepted.accepts_any() && !findings.fail(&accepted) => {
-            world.tolerance = Some(Tolerance::of(&pair, &world.computed, &uses, &accepted));
+            let is_named = !only.is_empty();
+            world.tolerance = Some(Tolerance::of(&pair, &world.computed, &uses, &accepted, is_named));
             Some(judge::beyond_accepted(&mut pair, &world, args, &mut findings))
         }
         Verdict::Differs { .. } | Verdict::Equal(_) | Verdict::NotFound { .. } => None,
@@ -111,10 +172,7 @@ fn side_by_side(report: &Report, [program, moved]: [Program; 2], renamed: &[Opti
         Some(it @ Verdict::Differs { .. }) => (it, None),
         rest => (verdict, rest),
     };
-    if let (Some(path), Verdict::Differs { rows, trace, .. }) = (args.picture(), &verdict) {
-        picture::draw(&mut pair, &world, args, path, (rows, trace.as_ref()))?;
-    }
-    report.print(&pair, &world, &Judged { verdict: &verdict, rest: rest.as_ref() }, &findings, &accepted)
+    Ok(Compared { pair, world, findings, accepted, verdict, rest })
 }
 
 /// What is to be compared is there on both sides: what is not would be passed over in silence.

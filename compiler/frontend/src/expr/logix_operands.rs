@@ -221,7 +221,9 @@ fn operands<'a, 's>(arguments: &'a [ast::Argument<'s>], instructions: bool) -> O
     let tag = tag.or_else(|| values.next())?;
     let mut rest: Vec<_> = values.collect();
     if rest.len() > 2 && rung.is_none() {
-        rung = Some(rest.remove(0));
+        // Counter, Preset, Accum is the vendor's order: the rung is what follows, unless numbers follow it.
+        let is_number = |at: usize| integer(rest[at]).is_some();
+        rung = Some(rest.remove(if !is_number(0) && is_number(2) { 0 } else { 2 }));
     }
     let number = |at: usize| rest.get(at).and_then(|it| integer(it));
     // 0 or 1 alone is a rung.

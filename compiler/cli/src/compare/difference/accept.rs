@@ -48,6 +48,11 @@ impl Accepted {
         self.lines.iter().any(|it| it.takes(kind, subject, pitfall))
     }
 
+    /// Whether an output has a line of its own that accepts a finding of this kind: a line of all subjects is none.
+    pub fn names(&self, kind: Kind, path: &str) -> bool {
+        self.lines.iter().any(|it| it.subject != "*" && it.takes(kind, path, None))
+    }
+
     /// Whether anything is accepted at all.
     pub fn accepts_any(&self) -> bool {
         !self.lines.is_empty()
@@ -83,14 +88,28 @@ impl Line {
         Ok(Self { number, subject: subject.to_owned(), what })
     }
 
+    /// Whether it is about this variable by its name.
+    pub fn names(&self, path: &str) -> bool {
+        self.subject.eq_ignore_ascii_case(path)
+    }
+
     pub fn takes(&self, kind: Kind, subject: &str, pitfall: Option<Pitfall>) -> bool {
-        let subject = self.subject == "*" || self.subject.eq_ignore_ascii_case(subject);
+        let subject = match kind == Kind::Output {
+            true => is_in(subject, &self.subject),
+            false => self.subject == "*" || self.subject.eq_ignore_ascii_case(subject),
+        };
         let what = match self.what {
             What::Trap(number) => pitfall.is_some_and(|it| it.number() == number),
             What::Kind(name) => kind.name() == name,
         };
         subject && what
     }
+}
+
+/// Whether a path is that of a variable, or of an element or a member of it.
+fn is_in(path: &str, whole: &str) -> bool {
+    let (path, whole) = (path.to_ascii_lowercase(), whole.to_ascii_lowercase());
+    path.strip_prefix(&whole).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 #[cfg(test)]

@@ -18,10 +18,12 @@ pub enum Kind {
     Fault,
     /// A variable that differs, and no trap or kind says why: the two programs are not the same.
     Variable,
+    /// An output that differs because of an accepted finding.
+    Output,
 }
 
 impl Kind {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Counter,
         Self::Timer,
         Self::OneShot,
@@ -31,6 +33,7 @@ impl Kind {
         Self::Retention,
         Self::Fault,
         Self::Variable,
+        Self::Output,
     ];
 
     /// In findings, and in the lines that accept them.
@@ -45,6 +48,7 @@ impl Kind {
             Self::Retention => "retention",
             Self::Fault => "fault",
             Self::Variable => "variable",
+            Self::Output => "output",
         }
     }
 
@@ -60,6 +64,7 @@ impl Kind {
             Self::Retention => "one system keeps it",
             Self::Fault => "one system faults here, and the other goes on",
             Self::Variable => "no trap explains it: the two programs are not the same",
+            Self::Output => "it is an output that follows from an accepted finding",
         }
     }
 

@@ -187,6 +187,15 @@ impl Findings {
         }
     }
 
+    /// Outputs that differ at the end of a trace because of what is accepted.
+    pub fn outputs(&mut self, pair: &Pair, differences: &[Matched], trace: &Trace) {
+        for it in differences {
+            let (kind, subject, at) = described(pair, Subject::Output(*it));
+            let verdict = Verdict::Reachable(Some(trace.clone()));
+            self.all.push(Finding { kind, subject, at, pitfall: None, verdict });
+        }
+    }
+
     /// What is seen of no counter's trap: the shortest trace is the first of several.
     fn sighted(&mut self, pair: &Pair, subject: Subject, pitfall: Option<Pitfall>, trace: Trace) {
         let place = self.others.get(&self.declared(pair, subject)).copied();
@@ -234,6 +243,7 @@ fn described(pair: &Pair, subject: Subject) -> (Kind, String, Option<Location>) 
         Subject::Counter(at) => (Kind::Counter, pair.instances(at)[0].path.clone(), None),
         Subject::Variable(it) => variable(it, Kind::Retention),
         Subject::Parted(it) => variable(it, Kind::Variable),
+        Subject::Output(it) => variable(it, Kind::Output),
         Subject::Fault(side, at) => (Kind::Fault, pair.sides[side].dialect.name().to_owned(), Some(at)),
         Subject::Block(_) | Subject::Computed(_) => unreachable!("they are listed before the search"),
     }
@@ -244,7 +254,13 @@ impl Finding {
     pub fn is_reachable(&self) -> bool {
         let follows = match self.kind {
             Kind::Timer | Kind::OneShot | Kind::Latch => self.pitfall.is_none(),
-            Kind::Counter | Kind::Width | Kind::Address | Kind::Retention | Kind::Fault | Kind::Variable => false,
+            Kind::Counter
+            | Kind::Width
+            | Kind::Address
+            | Kind::Retention
+            | Kind::Fault
+            | Kind::Variable
+            | Kind::Output => false,
         };
         matches!(self.verdict, Verdict::Reachable(Some(_))) && !follows
     }

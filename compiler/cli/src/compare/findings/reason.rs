@@ -40,7 +40,9 @@ fn says(finding: &Finding, rows: &[Row]) -> bool {
     let may_be = match finding.kind {
         Kind::Width | Kind::Address => true,
         Kind::Retention => rows.iter().any(|it| it.event.is_some()),
-        Kind::Counter | Kind::Timer | Kind::OneShot | Kind::Latch | Kind::Fault | Kind::Variable => false,
+        Kind::Counter | Kind::Timer | Kind::OneShot | Kind::Latch | Kind::Fault | Kind::Variable | Kind::Output => {
+            false
+        }
     };
     may_be && matches!(finding.verdict, Verdict::Reachable(_))
 }

@@ -5,7 +5,7 @@ use super::assume::{Assumptions, Mentioned};
 use super::choice::{Choice, Covered};
 use crate::compare::pair::{Input, Matched, Pair};
 use crate::compare::program::facts::{Facts, Numbers};
-use crate::compare::program::scalar::{Role, Scalar};
+use crate::compare::program::scalar::{Role, Scalar, Way};
 use crate::compare::program::walked::Name;
 use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
 use staunch_runtime::StringType;
@@ -66,6 +66,7 @@ pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources 
     let declared = typed(pair, facts, pair.matched(|it| it.role == Role::Input));
     let mut found = Sources { inputs: declared, ..Sources::default() };
     let is_alone = found.inputs.is_empty();
+    let filled = filled(pair);
     for scalars in pair.matched(|it| it.role == Role::Variable) {
         let scalar = pair.scalar(0, scalars[0]);
         let writes = [0, 1].map(|side| is_written(pair.scalar(side, scalars[side]), facts[side]));
@@ -78,7 +79,9 @@ pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources 
         let Some(input) = typed(pair, facts, vec![scalars]).pop() else { continue };
         let is_set = input.starts_at_zero() || scalar.at.is_retained;
         // What an instance is never given is its own business.
-        let is_input = writes == [false, false] && (is_alone || is_set && !scalar.at.is_inner);
+        let is_input = writes == [false, false]
+            && !is_table(pair, facts, scalars, &filled, is_alone)
+            && (is_alone || is_set && !scalar.at.is_inner);
         if is_named || is_input {
             found.inputs.push(input);
         } else {
@@ -86,6 +89,41 @@ pub fn sources(pair: &Pair, facts: [&Facts; 2], assumed: &Mentioned) -> Sources 
         }
     }
     found
+}
+
+/// The array or structure that a variable is a part of, where it may be a table.
+fn whole(scalar: &Scalar) -> Option<Way> {
+    let members = scalar.way.members[..scalar.at.table?].to_vec();
+    Some(Way { from: scalar.way.from, members })
+}
+
+/// Arrays and structures in which something does not start at zero.
+fn filled(pair: &Pair) -> HashSet<Way> {
+    let side = &pair.sides[0];
+    let is_set = |it: &&Scalar| side.state()[it.offset..it.offset + it.size].iter().any(|it| *it != 0);
+    side.scalars.all.iter().filter(|it| it.at.table.is_some()).filter(is_set).filter_map(whole).collect()
+}
+
+/// Whether it is a part of an array or structure that neither program writes: its values are the program's own. One
+/// without values that others see, as a panel's in the globals, or in a program that declares no input, is written from
+/// outside.
+fn is_table(pair: &Pair, facts: [&Facts; 2], scalars: Matched, filled: &HashSet<Way>, is_alone: bool) -> bool {
+    let is_read = |side: usize| {
+        let scalar = pair.scalar(side, scalars[side]);
+        let Some(depth) = scalar.at.table else { return false };
+        name(scalar).is_some_and(|it| !facts[side].is_written_around(it, &scalar.way, depth))
+    };
+    let Some(whole) = whole(pair.scalar(0, scalars[0])) else { return false };
+    let is_seen = is_alone || whole.from == pair.sides[0].program.globals;
+    is_read(0) && is_read(1) && (!is_seen || filled.contains(&whole))
+}
+
+/// Whether the world outside writes into a table.
+pub fn has_tables(pair: &Pair, facts: [&Facts; 2], inputs: &[Input]) -> bool {
+    let is_of = |side: usize, it: &Input| {
+        name(pair.scalar(side, it.scalars[side])).is_some_and(|it| facts[side].is_of_table(it))
+    };
+    inputs.iter().any(|it| is_of(0, it) || is_of(1, it))
 }
 
 /// Whether a program writes a variable.

@@ -23,7 +23,45 @@ pub fn write(from: &Session, path: &Path, sources: &Sources, names: &[Fix], to: 
             first.message
         ));
     }
-    output::write(path, text.as_bytes())
+    output::write(path, text.as_bytes())?;
+    if let Some(remark) = ladder(&text).filter(|_| to == Dialect::Logix) {
+        output::tell(format_args!("{name}: {remark}"));
+    }
+    Ok(())
+}
+
+/// What Studio 5000 takes only in ladder.
+const LADDER: [&str; 11] = ["CTU", "CTD", "RES", "TON", "TOF", "RTO", "ONS", "OSR", "OSF", "OTL", "OTU"];
+
+/// Which lines of a text for Logix are rungs there, and what the others are.
+fn ladder(text: &str) -> Option<String> {
+    let is_called = |line: &str, name: &str| {
+        let line = line.to_ascii_uppercase();
+        line.match_indices(name).any(|(at, _)| {
+            let is_word = |it: char| it.is_ascii_alphanumeric() || matches!(it, '_' | '.');
+            let before = line[..at].chars().next_back().is_some_and(is_word);
+            !before && line[at + name.len()..].trim_start().starts_with('(')
+        })
+    };
+    let mut names: Vec<&str> = Vec::new();
+    let mut lines: Vec<String> = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let code = line.split("//").next().unwrap_or_default();
+        let here: Vec<&str> = LADDER.into_iter().filter(|it| is_called(code, it)).collect();
+        if !here.is_empty() {
+            lines.push(number.to_string());
+        }
+        names.extend(here);
+    }
+    names.sort_unstable();
+    names.dedup();
+    let (last, others) = names.split_last()?;
+    let names = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
+    let lines = if lines.len() == 1 { format!("line {}", lines[0]) } else { format!("lines {}", lines.join(", ")) };
+    Some(format!(
+        "Studio 5000 has {names} in ladder only: make a rung of each ({lines}), with what is given as `RungIn` as its condition. It takes \
+         the other statements as Structured Text, also CTUD with an FBD_COUNTER; the variables are tags there"
+    ))
 }
 
 fn text(sources: &Sources, names: &[Fix], to: Dialect) -> String {

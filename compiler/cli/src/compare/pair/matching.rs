@@ -3,6 +3,7 @@
 use super::scan::{Input, Matched};
 use super::side::Side;
 use crate::compare::program::scalar::{Instance, Role, Scalar};
+use staunch_runtime::{Family, PinRole};
 use std::collections::{HashMap, HashSet};
 
 /// The scalars that both sides have, by their common names.
@@ -30,6 +31,22 @@ pub fn outputs(sides: &[Side; 2], blocks: &[Matched]) -> Vec<Vec<Matched>> {
         all.iter().filter(own).copied().collect()
     };
     blocks.iter().map(of).collect()
+}
+
+/// Whether it is Q of a CTD beside DN of Logix: each says another thing.
+pub fn is_done_of_down(sides: &[Side; 2], [ours, theirs]: Matched) -> bool {
+    let block = |side: usize, at: usize| match sides[side].scalars.all[at].role {
+        Role::Output(number) => sides[side].scalars.blocks.get(number),
+        Role::Input | Role::Variable | Role::Hidden => None,
+    };
+    let (Some(counter), Some(tag)) = (block(0, ours), block(1, theirs)) else { return false };
+    let is_done = tag
+        .block
+        .info()
+        .pin_for(PinRole::Done)
+        .is_some_and(|pin| sides[1].scalars.all[theirs].offset == tag.offset + pin.offset);
+    let only_down = counter.has(PinRole::Down) && !counter.has(PinRole::Up);
+    only_down && is_done && tag.block.info().family == Family::Logix
 }
 
 /// Whether a name, as a user writes it, is that of a scalar or of what it is in. It may begin with the one PROGRAM, as it

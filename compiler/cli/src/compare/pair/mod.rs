@@ -53,6 +53,9 @@ pub struct Pair {
     pub block_outputs: Vec<Vec<Matched>>,
     /// Whether all of both states is compared, or decides nothing.
     pub whole: bool,
+    /// The counters of the second program are COUNTERs of Logix that `compare` has put in their place: what asked for Q of
+    /// a CTD asks for `ACC <= 0`, and nothing for its DN.
+    pub is_ported: bool,
     compared_bytes: Comparison,
     counter_bytes: Comparison,
     block_bytes: Comparison,
@@ -84,6 +87,7 @@ impl Pair {
             blocks: Vec::new(),
             block_outputs: Vec::new(),
             whole: false,
+            is_ported: false,
             compared_bytes: Comparison::default(),
             counter_bytes: Comparison::default(),
             block_bytes: Comparison::default(),
@@ -110,6 +114,12 @@ impl Pair {
     /// The variables that are compared: all that both sides have, or those that are named.
     pub fn compare_only(&mut self, only: &[String]) {
         self.compared = matching::compared(&self.sides, &self.inputs, only);
+        if self.is_ported && only.is_empty() {
+            let has_counterpart = |it: &Matched| !matching::is_done_of_down(&self.sides, *it);
+            self.compared.retain(has_counterpart);
+            self.outputs.iter_mut().for_each(|it| it.retain(has_counterpart));
+            self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
+        }
         self.compared_bytes = Comparison::of(&self.sides, &self.compared);
     }
 
@@ -316,6 +326,11 @@ impl Pair {
     /// What is still compared after the accepted findings that have been seen.
     pub fn remaining_compared(&self, passing: &Passing) -> Vec<Matched> {
         self.compared.iter().copied().filter(|it| passing.remains(*it, &self.passed)).collect()
+    }
+
+    /// Of these, the outputs that may follow from accepted findings which have been seen.
+    pub fn following(&self, passing: &Passing, found: &[Matched]) -> Vec<Matched> {
+        found.iter().copied().filter(|it| passing.keeps(*it, &self.passed)).collect()
     }
 
     /// Whether these do not show the same.

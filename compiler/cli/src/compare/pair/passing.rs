@@ -13,6 +13,8 @@ pub struct Passing {
     pub faults: [bool; 2],
     /// For each bit, what is compared and may follow from it.
     pub cones: Vec<HashSet<Matched>>,
+    /// And what may follow from it, and is compared still: outputs that no line accepts.
+    pub kept: Vec<HashSet<Matched>>,
     /// And the bytes of both states that do, which then decide nothing else.
     pub bytes: Vec<[Vec<Range<usize>>; 2]>,
     /// Neither program can fault, so that nothing is left where all that is compared is passed over.
@@ -27,6 +29,11 @@ impl Passing {
     /// Whether this is compared still.
     pub fn remains(&self, matched: Matched, passed: &Passed) -> bool {
         !self.cones.iter().enumerate().any(|(bit, cone)| is_set(passed, bit) && cone.contains(&matched))
+    }
+
+    /// Whether this is an output that may follow from what was passed over, and is compared still.
+    pub fn keeps(&self, matched: Matched, passed: &Passed) -> bool {
+        self.kept.iter().enumerate().any(|(bit, kept)| is_set(passed, bit) && kept.contains(&matched))
     }
 
     /// Bytes of a side's state that decide nothing but what is passed over.

@@ -52,13 +52,28 @@ impl Dependencies {
     }
 
     /// The fields whose values may follow from that of one.
-    pub fn follow(&self, (owner, field): (StructId, FieldId)) -> HashSet<(StructId, FieldId)> {
+    pub fn follow(&self, start: (StructId, FieldId)) -> HashSet<(StructId, FieldId)> {
+        self.follow_past(start, &HashSet::new())
+    }
+
+    /// Those that follow without going through any of `others`.
+    pub fn follow_past(
+        &self,
+        (owner, field): (StructId, FieldId),
+        others: &HashSet<(StructId, FieldId)>,
+    ) -> HashSet<(StructId, FieldId)> {
         let start = Name::Field(owner, field);
+        let is_other = |node: &Node| match node {
+            Node::Whole(Name::Field(owner, field)) | Node::Part(Name::Field(owner, field)) => {
+                others.contains(&(*owner, *field))
+            }
+            Node::Whole(_) | Node::Part(_) | Node::Run(_) | Node::Result(_) | Node::Referenced => false,
+        };
         let mut open = vec![Node::Whole(start), Node::Part(start)];
         let mut seen: HashSet<Node> = open.iter().copied().collect();
         while let Some(node) = open.pop() {
             let next = self.decides.get(&node).into_iter().flatten();
-            open.extend(next.filter(|it| seen.insert(**it)));
+            open.extend(next.filter(|it| !is_other(it) && seen.insert(**it)));
         }
         let fields = seen.into_iter().filter_map(|it| match it {
             Node::Whole(Name::Field(owner, field)) => Some((owner, field)),

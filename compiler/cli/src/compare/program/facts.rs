@@ -7,6 +7,7 @@ mod numbers;
 
 mod found;
 
+mod table;
 mod walk;
 
 pub use found::Facts;
@@ -15,6 +16,7 @@ pub use numbers::Numbers;
 use super::walked::Name;
 use numbers::Number;
 use staunch_ir::{Expr, FieldId, Program, RoutineId, StructId};
+use std::collections::HashMap;
 use walk::Walk;
 
 /// Assignments in a row, through which a limit of the last target is followed back.
@@ -23,8 +25,20 @@ const MAX_BACK: usize = 4;
 const MAX_LIMITS: usize = 24;
 
 impl Facts {
+    /// With arrays that nothing writes as tables of constants, so that what they are indexed with is compared.
     pub fn of(program: &Program) -> Self {
-        let mut facts = Self::default();
+        let first = Self::with(program, HashMap::new());
+        let tables = table::find(program, &first);
+        if tables.is_empty() { first } else { Self::with(program, tables) }
+    }
+
+    /// Where the world outside writes arrays that no statement does.
+    pub fn without_tables(program: &Program) -> Self {
+        Self::with(program, HashMap::new())
+    }
+
+    fn with(program: &Program, tables: HashMap<Name, Vec<i128>>) -> Self {
+        let mut facts = Self { tables, ..Self::default() };
         let mut computed = Vec::new();
         for (at, routine) in program.routines.iter().enumerate() {
             let id = RoutineId::next(at);

@@ -57,6 +57,9 @@ pub struct Whereabouts {
     pub is_retained: bool,
     /// In a standard block that is itself an input.
     pub is_given: bool,
+    /// Of an array or structure that nothing outside can be meant to write, since it has no address and is not RETAIN:
+    /// how many members lead to the whole of it.
+    pub table: Option<usize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -166,9 +169,14 @@ impl Walk<'_> {
                 is_inner: false,
                 is_retained: field.retain == Retain::Kept,
                 is_given: false,
+                table: None,
             };
             let mut whole = Whole { offset, role, field: Some((id, number)), way, at, is_shared: false };
             let views = self.views_of_global(id, number);
+            let is_ours = field.address.is_none() && views.is_empty() && field.retain != Retain::Kept;
+            if is_ours && matches!(field.ty, Type::Array(_) | Type::Struct(_)) {
+                whole.at.table = Some(whole.way.members.len());
+            }
             if !views.is_empty() {
                 let area = |area| views.iter().any(|it| it.area == Some(area));
                 whole.at.is_output |= area(staunch_ir::Area::Output);
@@ -239,7 +247,8 @@ impl Walk<'_> {
                 Retain::Kept => true,
                 Retain::Anew => false,
             };
-            let at = Whereabouts { is_inner, is_retained, ..whole.at };
+            let table = whole.at.table.filter(|_| !is_class && !is_retained);
+            let at = Whereabouts { is_inner, is_retained, table, ..whole.at };
             let mut way = whole.way.clone();
             way.members.push(number);
             let field_of = Some((id, number));

@@ -58,8 +58,18 @@ impl Report<'_> {
         match names.as_slice() {
             [] => String::new(),
             _ if !accepted.accepts_any() => String::new(),
-            names => format!("\nNot accepted: {}.\n", names.join(", ")),
+            names => format!("\nNot accepted: {}.\n{}", names.join(", "), outputs(findings, accepted)),
         }
+    }
+}
+
+/// How to accept outputs that follow from what is accepted.
+fn outputs(findings: &Findings, accepted: &Accepted) -> String {
+    let open = findings.all.iter().filter(|it| it.kind == Kind::Output && !it.is_accepted(accepted));
+    let lines: Vec<String> = open.map(|it| format!("`{} output: reason`", it.subject)).collect();
+    match lines.as_slice() {
+        [] => String::new(),
+        lines => format!("An output needs a line of its own in the file of accepted findings: {}.\n", lines.join(", ")),
     }
 }
 

@@ -148,6 +148,7 @@ impl Report<'_> {
                 let _ = writeln!(text, "Tried: {}.\nNot tried: {}.", tried.join(", "), left.join("; "));
             }
         }
+        text += &judged.variants();
         if self.args.stimulus.is_none() {
             text += &self.listed(findings, accepted);
             text += &self.not_accepted(findings, accepted);
@@ -180,6 +181,20 @@ impl Report<'_> {
 }
 
 impl Judged<'_> {
+    /// What the vendors' documents leave open, and what each answer comes to.
+    fn variants(&self) -> String {
+        if self.others.is_empty() {
+            return String::new();
+        }
+        let mut text = self.variant.questions().join(" ");
+        let _ = write!(text, " The verdict above is with {}.", self.variant.words());
+        for other in self.others {
+            let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
+        }
+        text.push('\n');
+        text
+    }
+
     /// What is said of the search past what is accepted.
     fn beyond(&self) -> String {
         match self.rest {

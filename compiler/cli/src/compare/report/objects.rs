@@ -7,6 +7,7 @@ use crate::compare::difference::pitfall::Cause;
 use crate::compare::findings::finding::{self, Finding, Findings};
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::search::world::World;
+use crate::compare::variants::Other;
 use crate::compare::verdict::{Judged, Verdict, stimulus};
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
@@ -79,6 +80,13 @@ impl Report<'_> {
             Verdict::NotFound { .. } => "\"not found\"",
         });
         let _ = write!(text, ",\"beyond_accepted\":{beyond}");
+        if !judged.others.is_empty() {
+            let other =
+                |it: &Other| format!("{{\"settings\":{},\"verdict\":{}}}", it.variant.object(), quoted(it.verdict));
+            let others: Vec<_> = judged.others.iter().map(other).collect();
+            let settings = judged.variant.object();
+            let _ = write!(text, ",\"settings\":{settings},\"other_settings\":[{}]", others.join(","));
+        }
         text + "}\n"
     }
 
@@ -112,9 +120,9 @@ impl Report<'_> {
     fn difference(&self, pair: &Pair, rows: &[Row], shortest: bool, cause: &Cause) -> String {
         let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
         let sentence = cause.pitfall.map_or("null".to_owned(), |it| quoted(it.sentence()));
-        let advice = cause
-            .pitfall
-            .map_or("null".to_owned(), |it| quoted(&it.advice(self.args.from.dialect, self.args.to.dialect)));
+        let advice = cause.pitfall.map_or("null".to_owned(), |it| {
+            quoted(&it.advice(self.args.from.dialect, self.args.to.dialect, cause.form(pair)))
+        });
         let counter = cause.counter.as_deref().map_or("null".to_owned(), quoted);
         let variables: Vec<_> = differences.iter().map(|it| quoted(pair.path(*it))).collect();
         let shown = &differences[..differences.len().min(SHOWN)];

@@ -82,7 +82,11 @@ impl Report<'_> {
             Some(pitfall) => {
                 let counter = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
                 let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence());
-                let _ = writeln!(text, "What to do: {}", pitfall.advice(self.args.from.dialect, self.args.to.dialect));
+                let _ = writeln!(
+                    text,
+                    "What to do: {}",
+                    pitfall.advice(self.args.from.dialect, self.args.to.dialect, cause.form(pair))
+                );
             }
             None => text += &self.unexplained(pair, rows, &differences, findings),
         }

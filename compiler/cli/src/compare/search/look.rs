@@ -52,7 +52,12 @@ fn sightings(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -
     if event.is_some() && differs {
         // What follows from what the event has parted is no finding of its own.
         let parted = pair.parted_by_event();
-        let restarted = if parted.is_empty() { pair.newly_different() } else { parted };
+        let is_otherwise = sightings.iter().any(|it| it.1.is_some_and(|it| it != Pitfall::RESTART));
+        let restarted = match parted.is_empty() {
+            true if is_otherwise => Vec::new(),
+            true => pair.newly_different(),
+            false => parted,
+        };
         sightings.extend(restarted.into_iter().map(|it| (Subject::Variable(it), Some(Pitfall::RESTART))));
     }
     sightings

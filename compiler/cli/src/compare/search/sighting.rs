@@ -17,6 +17,8 @@ pub enum Subject {
     Computed(usize),
     /// A variable that is accepted to differ, or that does for no known reason.
     Parted(Matched),
+    /// An output that is accepted to follow from what is accepted.
+    Output(Matched),
     /// A fault on one side, and where.
     Fault(usize, Location),
 }

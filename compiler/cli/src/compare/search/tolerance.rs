@@ -26,6 +26,8 @@ pub struct Tolerance {
     differing: Vec<(Matched, usize)>,
     /// Those for no known reason.
     parted: Vec<Matched>,
+    /// Outputs that are accepted to follow from what is accepted.
+    outputs: Vec<Matched>,
     /// What an event is accepted to part.
     events: Vec<(Event, usize)>,
     /// What each bit leaves out of the comparison.
@@ -35,11 +37,13 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    pub fn of(pair: &Pair, computed: &[Candidate], uses: &[Use], accepted: &Accepted) -> Self {
+    /// `is_named`: what is compared was asked for by name, so that all of it is an output.
+    pub fn of(pair: &Pair, computed: &[Candidate], uses: &[Use], accepted: &Accepted, is_named: bool) -> Self {
         let found = Self {
             sightings: HashMap::new(),
             differing: Vec::new(),
             parted: Vec::new(),
+            outputs: Vec::new(),
             events: Vec::new(),
             passing: Passing {
                 faults: [0, 1].map(|side: usize| accepted.takes(Kind::Fault, pair.sides[side].dialect.name(), None)),
@@ -53,7 +57,9 @@ impl Tolerance {
         };
         let roots = HashMap::new();
         let dependencies = pair.sides.each_ref().map(|it| Dependencies::of(&it.program));
-        let mut builder = Builder { pair, accepted, dependencies, roots, subjects: HashMap::new(), found };
+        let own = outputs(pair, accepted, is_named);
+        let mut builder = Builder { pair, accepted, dependencies, own, roots, subjects: HashMap::new(), found };
+        builder.outputs(is_named);
         builder.counters(uses);
         builder.blocks();
         builder.variables(computed);
@@ -75,16 +81,33 @@ impl Tolerance {
         bits
     }
 
-    /// Variables that are accepted to differ for no known reason, and do since the last scan.
+    /// Variables that are accepted to differ for no known reason, and outputs that are accepted to follow, where they
+    /// differ since the last scan.
     pub fn parted(&self, pair: &Pair) -> impl Iterator<Item = Sighting> {
-        self.parted.iter().filter(|it| pair.newly_differs(**it)).map(|it| (Subject::Parted(*it), None))
+        let parted = self.parted.iter().map(|it| (*it, Subject::Parted(*it)));
+        let all = parted.chain(self.outputs.iter().map(|it| (*it, Subject::Output(*it))));
+        all.filter(|it| pair.newly_differs(it.0)).map(|it| (it.1, None))
     }
+}
+
+/// What has to be named to be passed over: outputs by their declaration, and what `--vars` asks for.
+fn is_output(pair: &Pair, matched: Matched, is_named: bool) -> bool {
+    is_named || (0..2).any(|side| pair.scalar(side, matched[side]).at.is_output)
+}
+
+/// The outputs that no line accepts.
+fn outputs(pair: &Pair, accepted: &Accepted, is_named: bool) -> HashSet<Matched> {
+    let is_accepted = |path: &str| [Kind::Output, Kind::Variable].into_iter().any(|it| accepted.names(it, path));
+    let outputs = pair.compared.iter().filter(|it| is_output(pair, **it, is_named));
+    outputs.filter(|it| !is_accepted(pair.path(**it))).copied().collect()
 }
 
 struct Builder<'p> {
     pair: &'p Pair,
     accepted: &'p Accepted,
     dependencies: [Dependencies; 2],
+    /// Outputs that are passed over by lines of their own alone.
+    own: HashSet<Matched>,
     roots: HashMap<[Option<Declared>; 2], usize>,
     /// What is accepted by itself, by its declaration: others of that are not.
     subjects: HashMap<Declared, HashSet<String>>,
@@ -92,6 +115,14 @@ struct Builder<'p> {
 }
 
 impl Builder<'_> {
+    /// The outputs that a line accepts, whatever they follow from.
+    fn outputs(&mut self, is_named: bool) {
+        let is_accepted = |it: &&Matched| {
+            is_output(self.pair, **it, is_named) && self.accepted.names(Kind::Output, self.pair.path(**it))
+        };
+        self.found.outputs = self.pair.compared.iter().filter(is_accepted).copied().collect();
+    }
+
     fn counters(&mut self, uses: &[Use]) {
         for (at, usage) in uses.iter().enumerate() {
             let instances = self.pair.instances(at);
@@ -198,14 +229,36 @@ impl Builder<'_> {
         let is_in = |it: &&Matched| {
             (0..2).any(|side| self.pair.declared(side, **it).is_some_and(|it| follows[side].contains(&it)))
         };
+        let (kept, passed): (Vec<Matched>, Vec<Matched>) = self
+            .pair
+            .compared
+            .iter()
+            .filter(is_in)
+            .partition(|it| self.own.contains(*it) && !self.is_own(**it, fields));
         let bit = self.found.passing.cones.len();
-        self.found.passing.cones.push(self.pair.compared.iter().filter(is_in).copied().collect());
-        self.found
-            .passing
-            .bytes
-            .push([0, 1].map(|side: usize| bytes_of(&self.pair.sides[side].scalars, &follows[side])));
+        self.found.passing.cones.push(passed.into_iter().collect());
+        let idle = [0, 1].map(|side: usize| self.idle(side, &follows[side], &kept));
+        self.found.passing.kept.push(kept.into_iter().collect());
+        self.found.passing.bytes.push([0, 1].map(|side: usize| bytes_of(&self.pair.sides[side].scalars, &idle[side])));
         self.roots.insert(fields, bit);
         bit
+    }
+}
+
+impl Builder<'_> {
+    /// Whether it is an output itself that is accepted to differ, by its name: not that it follows from something else.
+    fn is_own(&self, output: Matched, fields: [Option<Declared>; 2]) -> bool {
+        let path = self.pair.path(output);
+        let is_named = self.accepted.lines.iter().any(|it| it.names(path));
+        is_named && self.fields(output) == fields && self.pair.scalar(0, output[0]).role == Role::Variable
+    }
+
+    /// Of what follows from an accepted finding, the variables that decide nothing which is compared still.
+    fn idle(&self, side: usize, follows: &HashSet<Declared>, kept: &[Matched]) -> HashSet<Declared> {
+        let kept: HashSet<Declared> = kept.iter().filter_map(|it| self.pair.declared(side, *it)).collect();
+        let decides = |it: &Declared| !self.dependencies[side].follow(*it).is_disjoint(&kept);
+        let idle = follows.iter().filter(|it| kept.is_empty() || !decides(it));
+        idle.copied().collect()
     }
 }
 

@@ -36,10 +36,14 @@ pub struct World {
 impl World {
     /// The inputs, and what is known of them.
     pub fn of(pair: &mut Pair, args: &Compare) -> Result<Self, String> {
-        let facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
-        let facts = facts.each_ref();
+        let mut facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
         let mentioned = args.assume.as_deref().map(Mentioned::read).transpose()?.unwrap_or_default();
-        let sources = alphabet::sources(pair, facts, &mentioned);
+        let mut sources = alphabet::sources(pair, facts.each_ref(), &mentioned);
+        if alphabet::has_tables(pair, facts.each_ref(), &sources.inputs) {
+            facts = [0, 1].map(|side: usize| Facts::without_tables(&pair.sides[side].program));
+            sources = alphabet::sources(pair, facts.each_ref(), &mentioned);
+        }
+        let facts = facts.each_ref();
         (pair.inputs, pair.kept) = (sources.inputs, sources.kept);
         let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
         pair.never.clone_from(&assumptions.never);

@@ -6,7 +6,7 @@ use crate::compare::difference::pitfall;
 use crate::compare::findings::finding::Findings;
 use crate::compare::findings::reason;
 use crate::compare::inputs::alphabet;
-use crate::compare::pair::{Pair, Step};
+use crate::compare::pair::{Matched, Pair, Step};
 use crate::compare::program::scalar::{Role, Scalar};
 use crate::compare::search::trace::Trace;
 use crate::compare::search::world::World;
@@ -42,12 +42,18 @@ pub fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings:
             let faults = pair.scan(step);
             look::look(pair, world, step.event, faults);
         }
-        pair.compared = world.tolerance.iter().flat_map(|it| pair.remaining_compared(&it.passing)).collect();
+        let compared: Vec<Matched> =
+            world.tolerance.iter().flat_map(|it| pair.remaining_compared(&it.passing)).collect();
+        let outputs: Vec<Matched> =
+            world.tolerance.iter().flat_map(|it| pair.following(&it.passing, &compared)).collect();
+        pair.compared = compared;
+        let outputs: Vec<Matched> = outputs.into_iter().filter(|it| pair.differs_now(*it)).collect();
+        findings.outputs(pair, &outputs, trace);
         return differs(pair, world, trace, false, findings);
     }
     let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
     if outcome.complete && covers_all(pair, world, args) && is_told_apart {
-        return Verdict::Equal(scope::every_state(pair, world, &outcome));
+        return Verdict::Equal(scope::every_state(pair, world, &outcome) + &scope::passed_over(pair, world));
     }
     scope::not_found(pair, world, &outcome)
 }

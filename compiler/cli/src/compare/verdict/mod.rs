@@ -7,6 +7,7 @@ pub mod judge;
 
 use crate::compare::pair::Row;
 use crate::compare::search::trace::Trace;
+use crate::compare::variants::{Other, Variant};
 
 /// What the comparison came to.
 pub enum Verdict {
@@ -22,4 +23,8 @@ pub enum Verdict {
 pub struct Judged<'v> {
     pub verdict: &'v Verdict,
     pub rest: Option<&'v Verdict>,
+    /// How it answers what the vendors' documents leave open.
+    pub variant: &'v Variant,
+    /// What the other answers came to.
+    pub others: &'v [Other],
 }

@@ -57,6 +57,14 @@ fn of_one(pair: &Pair) -> Option<String> {
     Some(format!("not compared, since one program alone has it: {names}"))
 }
 
+/// What may follow from accepted findings, and is not compared once they were seen.
+pub fn passed_over(pair: &Pair, world: &World) -> String {
+    let cones = || world.tolerance.iter().flat_map(|it| &it.passing.cones);
+    let passed = pair.compared.iter().filter(|it| cones().any(|cone| cone.contains(*it)));
+    let names = listed(passed.map(|it| pair.path(*it).to_owned()));
+    names.map_or_else(String::new, |it| format!("; not compared after an accepted finding: {it}"))
+}
+
 /// A few names, and how many more there are.
 fn listed(names: impl Iterator<Item = String>) -> Option<String> {
     const SHOWN: usize = 5;

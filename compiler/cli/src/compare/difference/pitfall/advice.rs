@@ -2,13 +2,25 @@
 //! Each text is proved in each of its directions, by the cases of `tests/compare/advice.txt`.
 
 use super::list::Pitfall;
+use Form::{Down, Up, UpDown};
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc};
 
 /// Where no text is proved.
-const OWN: &str =
-    "No way of writing it is proved for this direction: write it anew, and compare that with `--against`.";
+const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
+     with `--against`.";
 
-/// What is said about some pitfalls on a move from one of these systems to one of those.
+/// Which way a counter counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// CTU
+    Up,
+    /// CTD
+    Down,
+    /// CTUD
+    UpDown,
+}
+
+/// What is said about some pitfalls of a CTU, or of other counters, on a move from one of these systems to one of those.
 struct Advice {
     /// What its cases call it.
     #[cfg_attr(not(test), expect(dead_code, reason = "a test finds the cases by it"))]
@@ -16,7 +28,19 @@ struct Advice {
     pitfalls: &'static [usize],
     from: &'static [Dialect],
     to: &'static [Dialect],
+    /// The counters that it is proved for; empty where it says nothing of counting.
+    forms: &'static [Form],
     text: &'static str,
+}
+
+impl Advice {
+    const fn of(self, forms: &'static [Form]) -> Self {
+        Self { forms, ..self }
+    }
+
+    fn is_for(&self, form: Form) -> bool {
+        self.forms.is_empty() || self.forms.contains(&form)
+    }
 }
 
 /// Of the systems whose counters are blocks, all but Cscape.
@@ -29,18 +53,18 @@ const fn advice(
     to: &'static [Dialect],
     text: &'static str,
 ) -> Advice {
-    Advice { name, pitfalls, from, to, text }
+    Advice { name, pitfalls, from, to, forms: &[Up], text }
 }
 
 /// What holds between the systems whose counters are blocks.
 const BLOCKS: &[Advice] = &[
     advice(
         "edge",
-        &[1, 6, 12],
+        &[1, 6],
         NOT_CSCAPE,
         &[Cscape],
-        "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.",
-    ),
+        EDGE,
+    ).of(&[Up, Down]),
     advice(
         "every call",
         &[1, 6, 12],
@@ -80,14 +104,30 @@ const BLOCKS: &[Advice] = &[
         &[15],
         &[Openplc],
         &[Iec, Codesys],
-        "Count up only below the preset (here 50), and on IEC down only above 0: \
-         `e(CLK := sensor); c(CU := e.Q AND c.CV < 50, …)`, `c(CD := e.Q AND c.CV > 0, …)`.",
+        "Count up only below the preset (here 50): `e(CLK := sensor); c(CU := e.Q AND c.CV < 50, …)`.",
     ),
-    advice("above 0", &[3], &[Codesys, Cscape], &[Iec], ABOVE_0),
-    advice("above 0", &[14], &[Codesys, Openplc], &[Iec], ABOVE_0),
-    advice("above 0", &[14], &[Openplc], &[Codesys], ABOVE_0),
-    advice("own variable", &[3], &[Iec], &[Cscape, Codesys], OWN_VARIABLE),
-    advice("own variable", &[15], &[Iec], &[Openplc], OWN_VARIABLE),
+    advice(
+        "between 0 and the preset",
+        &[15],
+        &[Openplc],
+        &[Iec],
+        "Count down only above 0: `e(CLK := sensor); c(CD := e.Q AND c.CV > 0, …)`.",
+    )
+    .of(&[Down]),
+    advice(
+        "every call, down",
+        &[1, 6],
+        &[Cscape],
+        NOT_CSCAPE,
+        "Make an edge in each call, and stop at 0 as CSCAPE does: \
+         `c(CD := FALSE, LD := …); c(CD := sensor AND c.CV > 0, LD := …)`.",
+    )
+    .of(&[Down]),
+    advice("above 0", &[3], &[Codesys, Cscape], &[Iec], ABOVE_0).of(&[Down]),
+    advice("above 0", &[14], &[Codesys, Openplc], &[Iec], ABOVE_0).of(&[Down]),
+    advice("above 0", &[14], &[Openplc], &[Codesys], ABOVE_0).of(&[Down]),
+    advice("own variable", &[3], &[Iec], &[Cscape, Codesys], OWN_VARIABLE).of(&[Down]),
+    advice("own variable", &[15], &[Iec], &[Openplc], OWN_VARIABLE).of(&[Down]),
     advice(
         "count up to 32767",
         &[8],
@@ -102,7 +142,13 @@ const BLOCKS: &[Advice] = &[
         &[Codesys],
         "Give a preset that can be negative as `INT_TO_WORD(MAX(preset, 0))`.",
     ),
-    advice("wider", &[8], &[Codesys], &[Iec, Openplc], "Count in a CTU_DINT, which holds what a WORD does."),
+    advice(
+        "wider",
+        &[8],
+        &[Codesys],
+        &[Iec, Openplc],
+        "Count in a CTU_DINT, and stop where a WORD does: `e(CLK := pulse); c(CU := e.Q AND c.CV < 65535, …)`.",
+    ),
     advice(
         "own variable, wider",
         &[8],
@@ -116,21 +162,21 @@ const BLOCKS: &[Advice] = &[
         &[Iec, Codesys, Openplc, Cscape],
         &[Iec, Codesys, Openplc, Cscape],
         "Give the inputs by position, or rename the pins as the lints say; `--write` does.",
-    ),
+    ).of(&[]),
     advice(
         "fall",
         &[16],
         &[Iec, Codesys, Cscape, Logix],
         &[Openplc],
         "Find the edge yourself: `fell := before AND NOT sensor; before := sensor;`.",
-    ),
+    ).of(&[]),
     advice(
         "fall from TRUE",
         &[16],
         &[Openplc],
         &[Iec, Codesys, Cscape, Logix],
         "Find the edge yourself, with `before` initially TRUE: `fell := before AND NOT sensor; before := sensor;`.",
-    ),
+    ).of(&[]),
     advice(
         "retain",
         &[11],
@@ -138,7 +184,7 @@ const BLOCKS: &[Advice] = &[
         &[Iec, Codesys, Openplc, Cscape, Logix],
         "Declare RETAIN what both are to keep, also in the program that moves (on CSCAPE R_CTU or R_CTD with a RETAIN RCV); CSCAPE, \
          IEC and OPENPLC have no variable that only STOP -> RUN keeps. Logix keeps all.",
-    ),
+    ).of(&[]),
 ];
 
 /// What holds on a move to Logix.
@@ -159,6 +205,25 @@ const TO_LOGIX: &[Advice] = &[
         "Find the edge yourself: `edge := sensor AND NOT before; before := sensor; c.CU := FALSE; CTU(c, edge);`, and ask for \
          `c.ACC >= c.PRE` instead of DN.",
     ),
+    advice(
+        "edge on Logix, down",
+        &[5, 6],
+        NOT_CSCAPE,
+        &[Logix],
+        "Find the edge yourself: `edge := pulse AND NOT before; before := pulse; c.CD := FALSE; CTD(c, edge);`, load after the CTD: \
+         `IF load THEN c.ACC := c.PRE; END_IF`, and ask for `c.ACC <= 0` in place of Q.",
+    )
+    .of(&[Down]),
+    advice(
+        "edges on Logix",
+        &[5, 6],
+        NOT_CSCAPE,
+        &[Logix],
+        "Find both edges yourself, and call CTUD twice, so that it forgets: `eu := up AND NOT bu; bu := up; \
+         ed := down AND NOT bd; bd := down; c.CUEnable := FALSE; c.CDEnable := FALSE; CTUD(c); c.CUEnable := eu; c.CDEnable := ed; CTUD(c);`; \
+         ask for `c.ACC >= c.PRE` in place of QU, and for `c.ACC <= 0` in place of QD.",
+    )
+    .of(&[UpDown]),
     advice("no DN", &[13], NOT_CSCAPE, &[Logix], "Ask for `c.ACC >= c.PRE` instead of DN."),
     advice(
         "count and load",
@@ -166,16 +231,16 @@ const TO_LOGIX: &[Advice] = &[
         &[Iec, Codesys, Openplc, Cscape],
         &[Logix],
         "Ask for `c.ACC <= 0` instead of DN, and load after the CTD: `IF load THEN c.ACC := c.PRE; END_IF`.",
-    ),
-    advice("above 0 on Logix", &[3], &[Codesys], &[Logix], ABOVE_0_ON_LOGIX),
-    advice("above 0 on Logix", &[14], &[Codesys, Openplc], &[Logix], ABOVE_0_ON_LOGIX),
+    ).of(&[Down]),
+    advice("above 0 on Logix", &[3], &[Codesys], &[Logix], ABOVE_0_ON_LOGIX).of(&[Down]),
+    advice("above 0 on Logix", &[14], &[Codesys, Openplc], &[Logix], ABOVE_0_ON_LOGIX).of(&[Down]),
     advice(
         "above 0 in every scan",
         &[3],
         &[Cscape],
         &[Logix],
         "Count in each scan, above 0: `c.CD := FALSE; CTD(c, pulse AND c.ACC > 0);`.",
-    ),
+    ).of(&[Down]),
     advice(
         "between 0 and the preset on Logix",
         &[15],
@@ -183,7 +248,9 @@ const TO_LOGIX: &[Advice] = &[
         &[Logix],
         "Count only below the preset, and down only above 0: `edge := sensor AND NOT before AND c.ACC < c.PRE; before := sensor; \
          c.CU := FALSE; CTU(c, edge);`, with CTD `c.ACC > 0` and `c.CD`.",
-    ),
+    )
+    .of(&[Up, Down]),
+    advice("edge", &[12], NOT_CSCAPE, &[Cscape], EDGE),
     advice(
         "before the limit",
         &[7],
@@ -234,7 +301,7 @@ const FROM_LOGIX: &[Advice] = &[
         &[Logix],
         &[Iec],
         "DN of Logix is `c.CV >= preset`, and not Q: `IF rung THEN done := c.CV >= preset; END_IF`, with `done` RETAIN.",
-    ),
+    ).of(&[Down]),
     advice(
         "DN of a variable",
         &[4],
@@ -242,13 +309,21 @@ const FROM_LOGIX: &[Advice] = &[
         &[Codesys, Cscape, Openplc],
         "Count in a RETAIN variable of your own: `IF edge THEN n := n - 1; END_IF`; DN of Logix is \
          `IF rung THEN done := n >= preset; END_IF`.",
-    ),
-    advice("own variable for Logix", &[3], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE),
+    ).of(&[Down]),
+    advice("own variable for Logix", &[3], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE_DOWN).of(&[Down]),
     advice("own variable for Logix", &[7], &[Logix], &[Iec, Openplc], LOGIX_VARIABLE),
     advice("own variable for Logix", &[8], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE),
-    advice("own variable for Logix", &[15], &[Logix], &[Openplc], LOGIX_VARIABLE),
-    advice("wider", &[8], &[Logix], &[Iec, Openplc], "Count in a CTU_DINT, which holds what a COUNTER does."),
+    advice("own variable for Logix", &[15], &[Logix], &[Openplc], LOGIX_VARIABLE_DOWN).of(&[Down]),
+    advice(
+        "wider",
+        &[8],
+        &[Logix],
+        &[Iec, Openplc],
+        "Count in a CTU_DINT: it holds what a COUNTER does, and stops at 2147483647, where that wraps (trap 7).",
+    ),
 ];
+
+const EDGE: &str = "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.";
 
 const GREAT_PRESET: &str = "Let PV be the greatest value of its type (32767 of an INT), and compare the count yourself: \
      `c.CV >= 50` in place of Q, `c.CV > 60`.";
@@ -264,46 +339,57 @@ const OWN_VARIABLE: &str = "Count below 0 in a variable of your own: \
 const LOGIX_VARIABLE: &str = "Count in a RETAIN DINT of your own, with `before` initially TRUE and not RETAIN: \
      `edge := rung AND NOT before; before := rung; IF edge THEN n := n + 1; END_IF`.";
 
+const LOGIX_VARIABLE_DOWN: &str = "Count in a RETAIN DINT of your own, with `before` initially TRUE and not RETAIN: \
+     `edge := rung AND NOT before; before := rung; IF edge THEN n := n - 1; END_IF`.";
+
 fn all() -> impl Iterator<Item = &'static Advice> {
     BLOCKS.iter().chain(TO_LOGIX).chain(FROM_LOGIX)
 }
 
 impl Pitfall {
     /// What to do on the system that the program moves to.
-    pub fn advice(self, from: Dialect, to: Dialect) -> String {
-        let mut texts: Vec<&str> = said(self.number(), from, to).map(|it| it.text).collect();
+    pub fn advice(self, from: Dialect, to: Dialect, form: Form) -> String {
+        let mut texts: Vec<&str> = said(self.number(), from, to, form).map(|it| it.text).collect();
         texts.dedup();
         if texts.is_empty() {
             return OWN.to_owned();
         }
         let text = texts.join(" ");
         match to {
-            Cscape | Codesys => text.replace("R := ", "RESET := "),
+            Cscape | Codesys => text.replace("R := ", "RESET := ").replace("LD := ", "LOAD := "),
             Iec | Openplc | Logix | Dialect::Siemens => text,
         }
     }
 }
 
-fn said(pitfall: usize, from: Dialect, to: Dialect) -> impl Iterator<Item = &'static Advice> {
-    all().filter(move |it| it.pitfalls.contains(&pitfall) && it.from.contains(&from) && it.to.contains(&to))
+fn said(pitfall: usize, from: Dialect, to: Dialect, form: Form) -> impl Iterator<Item = &'static Advice> {
+    let found = all().filter(move |it| it.pitfalls.contains(&pitfall) && it.is_for(form));
+    found.filter(move |it| it.from.contains(&from) && it.to.contains(&to))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Advice, Dialect, all};
+    use super::{Advice, Dialect, Form, all};
 
     const CASES: &str = include_str!("../../../../tests/compare/advice.txt");
 
-    /// Whether a case has the advice for a pitfall and a direction.
-    fn is_proved(it: &Advice, pitfall: usize, from: Dialect, to: Dialect) -> bool {
-        let heads = CASES.lines().filter_map(|it| it.strip_prefix("trap "));
-        heads.into_iter().any(|head| {
+    /// Whether a case has the advice for a pitfall, a direction and a kind of counter.
+    fn is_proved(it: &Advice, pitfall: usize, from: Dialect, to: Dialect, form: Option<Form>) -> bool {
+        CASES.split("\n\n").any(|case| {
+            let Some(head) = case.lines().find_map(|it| it.strip_prefix("trap ")) else { return false };
             let (number, rest) = head.split_once(": ").expect("a trap");
             let mut parts = rest.split("; ");
             let (directions, name) = (parts.next().expect("directions"), parts.last());
             let (a, b) = directions.split_once(" -> ").expect("two sides");
             let has = |list: &str, dialect: Dialect| list.split(", ").any(|it| it == dialect.name());
-            number == pitfall.to_string() && name == Some(it.name) && has(a, from) && has(b, to)
+            let instruction = form.map_or("", |it| match it {
+                Form::Up => "CTU",
+                Form::Down => "CTD",
+                Form::UpDown => "CTUD",
+            });
+            let mut words = case.split(|it: char| !it.is_ascii_alphanumeric());
+            let counts = instruction.is_empty() || words.any(|it| it == instruction);
+            number == pitfall.to_string() && name == Some(it.name) && has(a, from) && has(b, to) && counts
         })
     }
 
@@ -314,8 +400,12 @@ mod tests {
             for pitfall in it.pitfalls.iter().copied() {
                 let directions = it.from.iter().flat_map(|from| it.to.iter().map(move |to| (*from, *to)));
                 for (from, to) in directions.filter(|(from, to)| from != to) {
-                    if !is_proved(it, pitfall, from, to) {
-                        missing.push(format!("trap {pitfall}: {} -> {}; {}", from.name(), to.name(), it.name));
+                    let forms: Vec<Option<Form>> = match it.forms {
+                        [] => vec![None],
+                        forms => forms.iter().copied().map(Some).collect(),
+                    };
+                    for form in forms.into_iter().filter(|form| !is_proved(it, pitfall, from, to, *form)) {
+                        missing.push(format!("trap {pitfall}: {} -> {}; {} {form:?}", from.name(), to.name(), it.name));
                     }
                 }
             }

@@ -1,11 +1,15 @@
 //! The counter that a difference comes from, and its pitfall.
 
+use super::advice::Form;
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
 use super::list::Pitfall;
 use crate::compare::pair::{Matched, Pair, Row};
+use crate::compare::program::apart::Declared;
+use crate::compare::program::dependency::Dependencies;
 use crate::compare::program::scalar::{Instance, Role};
 use staunch_host::Event;
 use staunch_runtime::PinRole;
+use std::collections::HashSet;
 
 /// What the last scan has made of a counter: `None` where it has not parted by it, and within it no
 /// pitfall where none explains it.
@@ -31,10 +35,22 @@ fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event>, h
         now: of(states[1]),
         first: false,
         restarted: event.is_some(),
+        kept_alike: is_kept_alike(pair, at, event),
         feeds_itself: habits.feeds_itself,
         guards_itself: habits.guards_itself,
         counts_down: instances.into_iter().any(only_down),
     })
+}
+
+/// Whether both systems keep, or lose, a count in an event; in one that an earlier scan had, in all of them.
+fn is_kept_alike(pair: &Pair, at: usize, event: Option<Event>) -> bool {
+    let instances = pair.instances(at);
+    let keeps = |side: usize, event: Event| {
+        let count = instances[side].block.info().pin_for(PinRole::Count);
+        count.is_some_and(|it| pair.sides[side].keeps(event, instances[side].offset + it.offset))
+    };
+    let mut events = Event::ALL.into_iter().filter(|it| event.is_none_or(|only| only == *it));
+    events.all(|it| keeps(0, it) == keeps(1, it))
 }
 
 pub(super) fn kind(instance: &Instance) -> Option<Kind> {
@@ -71,29 +87,40 @@ pub struct Cause {
     pub pitfall: Option<Pitfall>,
 }
 
-/// Looks at the counters that part in the last row by what is compared of them, then for the first scan
-/// in which any counter parted; without one, at restarts and at types.
+impl Cause {
+    /// Which way the counter counts: of a COUNTER, by the other system's block.
+    pub fn form(&self, pair: &Pair) -> Form {
+        let numbers = 0..pair.counters.len();
+        let mut found = numbers.map(|it| pair.instances(it)).filter(|it| Some(&it[0].path) == self.counter.as_ref());
+        found.next().map_or(Form::Up, |instances| {
+            let is_tag = |it: &&Instance| it.block.info().name.eq_ignore_ascii_case("COUNTER");
+            let block = instances.into_iter().find(|it| !is_tag(it));
+            match block.map(|it| (it.has(PinRole::Up), it.has(PinRole::Down))) {
+                Some((false, true)) => Form::Down,
+                Some((true, true)) => Form::UpDown,
+                Some((_, false)) | None => Form::Up,
+            }
+        })
+    }
+}
+
+/// Looks at the counters that part in the last row by what is compared of them, then at those that the differences depend
+/// on; without one, at restarts and at types.
 pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habits]) -> Cause {
     let last = rows.len().saturating_sub(1);
     let direct = parted(pair, rows, last, habits, |it| differences.contains(it));
     if direct.pitfall.is_some() {
         return direct;
     }
-    let mut counter = direct.counter;
-    for (at, row) in rows.iter().enumerate() {
-        let all = |number: usize, rows: &[Row]| pair.outputs[number].iter().all(|it| agrees(pair, rows, at, *it));
-        let found = parted(pair, rows, at, habits, |it| {
-            let owner = pair.outputs.iter().position(|outputs| outputs.contains(it));
-            owner.is_some_and(|number| all(number, rows))
-        });
-        if found.pitfall.is_some() {
-            return found;
-        }
-        counter = counter.or(found.counter);
-        let restarted = row.event.is_some() && pair.compared.iter().any(|it| !pair.same(*it, row));
-        if restarted {
-            return Cause { counter, pitfall: Some(Pitfall::RESTART) };
-        }
+    let relevant = Relevant::of(pair, differences);
+    let found = roots(pair, rows, habits, &relevant);
+    let restarted = rows.iter().position(|row| row.event.is_some() && relevant.differs(pair, row));
+    if let Some(found) = found.filter(|it| restarted.is_none_or(|row| it.row <= row)) {
+        return Cause { counter: Some(pair.instances(found.counter)[0].path.clone()), pitfall: Some(found.pitfall) };
+    }
+    let counter = direct.counter;
+    if restarted.is_some() {
+        return Cause { counter, pitfall: Some(Pitfall::RESTART) };
     }
     if let Some(counter) = held_through_reset(pair, rows, habits) {
         return Cause { counter: Some(counter), pitfall: Some(Pitfall::numbered(6)) };
@@ -107,6 +134,79 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     });
     let pitfall = (counter.is_none() && widths).then_some(Pitfall::WIDTHS);
     Cause { counter, pitfall }
+}
+
+/// What the differences at the end depend on.
+struct Relevant {
+    dependencies: Dependencies,
+    differences: HashSet<Declared>,
+}
+
+impl Relevant {
+    fn of(pair: &Pair, differences: &[Matched]) -> Self {
+        let declared = differences.iter().filter_map(|it| pair.declared(0, *it)).collect();
+        Self { dependencies: Dependencies::of(&pair.sides[0].program), differences: declared }
+    }
+
+    /// Whether a variable decides them, without going through others. A fault may follow from anything.
+    fn has(&self, declared: Option<Declared>, others: &HashSet<Declared>) -> bool {
+        let decides = |it| !self.dependencies.follow_past(it, others).is_disjoint(&self.differences);
+        self.differences.is_empty() || declared.is_none_or(decides)
+    }
+
+    /// Whether what decides them differs in a row.
+    fn differs(&self, pair: &Pair, row: &Row) -> bool {
+        let mut differing = pair.compared.iter().filter(|it| !pair.same(**it, row));
+        differing.any(|it| self.has(pair.declared(0, *it), &HashSet::new()))
+    }
+}
+
+/// A counter that parts from its counterpart.
+#[derive(Clone, Copy, Debug)]
+struct Parting {
+    counter: usize,
+    row: usize,
+    pitfall: Pitfall,
+    /// Both were given the same.
+    is_root: bool,
+}
+
+/// The counter that the differences come from: the first that parts of those which decide them, by itself and
+/// not through another such counter.
+fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Option<Parting> {
+    let declared = |counter: usize| pair.instances(counter)[0].field;
+    let all = (0..habits.len()).filter(|it| relevant.has(declared(*it), &HashSet::new()));
+    let found: Vec<Parting> = all.filter_map(|it| parting(pair, rows, it, habits[it])).collect();
+    let roots: Vec<Parting> = found.iter().copied().filter(|it| it.is_root).collect();
+    let is_near = |it: &&Parting| {
+        let others = roots.iter().map(|it| it.counter).filter(|other| *other != it.counter);
+        relevant.has(
+            declared(it.counter),
+            &others.filter_map(declared).filter(|other| Some(*other) != declared(it.counter)).collect(),
+        )
+    };
+    let first = |found: &mut dyn Iterator<Item = &Parting>| found.min_by_key(|it| it.row).copied();
+    first(&mut roots.iter().filter(is_near)).or_else(|| first(&mut roots.iter())).or_else(|| first(&mut found.iter()))
+}
+
+/// The first row in which a counter parts by a pitfall.
+fn parting(pair: &Pair, rows: &[Row], counter: usize, habits: Habits) -> Option<Parting> {
+    let outputs = &pair.outputs[counter];
+    (0..rows.len()).find_map(|at| {
+        let agreed = outputs.iter().all(|it| agrees(pair, rows, at, *it));
+        let parts = outputs.iter().any(|it| !pair.same(*it, &rows[at]));
+        let case = (agreed && parts).then(|| case_in(pair, rows, at, counter, habits)).flatten()?;
+        let pitfall = classify(&case)?;
+        Some(Parting { counter, row: at, pitfall, is_root: !case.given_differs() })
+    })
+}
+
+/// A counter in a row.
+fn case_in(pair: &Pair, rows: &[Row], at: usize, counter: usize, habits: Habits) -> Option<Case> {
+    let now = rows[at].states.each_ref().map(Vec::as_slice);
+    let start = at.checked_sub(1).map(|it| &rows[it]);
+    let before = start.map_or(pair.start(), |it| it.states.each_ref().map(Vec::as_slice));
+    case(pair, counter, [before, now], rows[at].event, habits).map(|it| Case { first: at == 0, ..it })
 }
 
 /// The first F_TRIG that comes to differ because it is another block on the other system.
@@ -134,11 +234,7 @@ fn parted(pair: &Pair, rows: &[Row], at: usize, habits: &[Habits], wanted: impl 
         if !pair.outputs[number].iter().any(|it| news(&it)) {
             continue;
         }
-        let now = row.states.each_ref().map(Vec::as_slice);
-        let start = at.checked_sub(1).map(|it| &rows[it]);
-        let before = start.map_or(pair.start(), |it| it.states.each_ref().map(Vec::as_slice));
-        let found = case(pair, number, [before, now], row.event, *own);
-        let pitfall = found.and_then(|it| classify(&Case { first: at == 0, ..it }));
+        let pitfall = case_in(pair, rows, at, number, *own).and_then(|it| classify(&it));
         let path = pair.instances(number)[0].path.clone();
         if pitfall.is_some() {
             return Cause { counter: Some(path), pitfall };

@@ -46,6 +46,8 @@ pub struct Case {
     /// It is the first scan of all.
     pub first: bool,
     pub restarted: bool,
+    /// Both systems keep, or lose, the same of it in that event.
+    pub kept_alike: bool,
     /// The counter is reset by its own output.
     pub feeds_itself: bool,
     /// What it counts depends on its own count.
@@ -103,7 +105,7 @@ impl Case {
     }
 
     /// What the counter is given differs: what is upstream of it has parted.
-    fn given_differs(&self) -> bool {
+    pub(super) fn given_differs(&self) -> bool {
         let logix = self.has(Family::Logix);
         let [a, b] = self.now;
         let resets = !logix && (a.reset != b.reset || a.load != b.load);
@@ -113,17 +115,27 @@ impl Case {
 
 /// Which pitfall a counter's difference shows, if one does.
 pub fn classify(case: &Case) -> Option<Pitfall> {
-    let [a, b] = case.now;
-    let number = if case.restarted {
+    let number = if case.restarted && case.kept_alike {
+        // What both keep is not parted by the event: Logix looks at its rungs anew.
+        (case.parts(Family::Logix) && (case.up() || case.down())).then_some(5).or_else(|| of_scan(case))
+    } else if case.restarted {
         Some(if case.before.iter().all(|it| it.count == 0) && case.parts(Family::Logix) { 5 } else { 11 })
-    } else if a.preset != b.preset && case.is_wider() && (a.preset < 0 || b.preset < 0) {
+    } else {
+        of_scan(case)
+    };
+    number.map(Pitfall::numbered)
+}
+
+/// Where no event has parted it.
+fn of_scan(case: &Case) -> Option<usize> {
+    let [a, b] = case.now;
+    if a.preset != b.preset && case.is_wider() && (a.preset < 0 || b.preset < 0) {
         Some(8)
     } else if a.count != b.count {
         counts(case)
     } else {
         outputs(case)
-    };
-    number.map(Pitfall::numbered)
+    }
 }
 
 fn counts(case: &Case) -> Option<usize> {

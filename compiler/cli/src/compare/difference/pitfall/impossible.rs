@@ -75,7 +75,8 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         2 | 3 if parts(Family::Openplc) => Some("what OPENPLC does is trap 15"),
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),
         3 => no_down.or_else(|| (goes_below(a) == goes_below(b)).then_some("both systems do the same at 0")),
-        4 => no_logix.or((!has(PinRole::Down) || has(PinRole::Up)).then_some("it is no CTD")),
+        4 => no_logix
+            .or((!instances.iter().any(|it| it.has(PinRole::Down) && !it.has(PinRole::Up))).then_some("it is no CTD")),
         5 | 13 => no_logix,
         6 => no_logix.and(no_cscape).or((!usage.resets).then_some("nothing resets or loads it")),
         7 => (a.repr != b.repr || same_kind || !parts(Family::Logix))

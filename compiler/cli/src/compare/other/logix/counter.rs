@@ -46,6 +46,16 @@ impl Counter {
         self.tag.pin_for(self.block.pin(pin)?.role?).map(|it| it.name)
     }
 
+    /// Whether an output says that nothing is left, `CV <= 0`: QD, and Q of a CTD. No flag of Logix is that; DN of its
+    /// CTD is TRUE while ACC >= PRE.
+    pub fn is_empty(self, pin: &str) -> bool {
+        match self.block.pin(pin).and_then(|it| it.role) {
+            Some(PinRole::Empty) => true,
+            Some(PinRole::Done) => self.direction == Direction::Down,
+            _ => false,
+        }
+    }
+
     /// What an argument at this position is for; after the inputs, the variable that keeps the count.
     pub fn input_at(self, at: usize) -> Option<Input> {
         match self.block.inputs().nth(at) {

@@ -149,10 +149,10 @@ impl<'t, 'f> Writer<'t, 'f> {
     fn field(&self, counter: Counter, (name, value): &(Name<'_>, Initial<'_>)) -> Option<String> {
         let (start, end) = bounds(value.span);
         let value = &self.text[start..end];
-        match counter.member(name.text) {
+        match counter.member(name.text).filter(|_| !counter.is_empty(name.text)) {
             Some(tag) => Some(format!("{tag} := {value}")),
             // An input that is FALSE does nothing, and an output is computed anew by each call.
-            None if value.eq_ignore_ascii_case("FALSE") || name.text.eq_ignore_ascii_case("QD") => None,
+            None if value.eq_ignore_ascii_case("FALSE") || counter.is_empty(name.text) => None,
             // Nothing stands for it; the compiler says so at this place.
             None => Some(format!("{} := {value}", name.text)),
         }
@@ -283,10 +283,12 @@ impl<'t, 'f> Writer<'t, 'f> {
         self.expr(base, true);
         let (start, end) = bounds(base.span);
         let owner = self.apply(start, end);
+        if counter.is_empty(name.text) {
+            return self.replace(expr.span, format!("({owner}.ACC <= 0)"));
+        }
         let text = match (counter.member(name.text), counter.narrow) {
             (Some(tag @ ("ACC" | "PRE")), Some(conversion)) if narrow => format!("{conversion}({owner}.{tag})"),
             (Some(tag), _) => format!("{owner}.{tag}"),
-            (None, _) if name.text.eq_ignore_ascii_case("QD") => format!("({owner}.ACC <= 0)"),
             // Nothing stands for it; the compiler says so at this place.
             (None, _) => return,
         };
@@ -329,13 +331,13 @@ impl<'t, 'f> Writer<'t, 'f> {
             if let ArgumentKind::Output { name, negated, target: Some(target) } = &argument.kind {
                 let (start, end) = bounds(target.span);
                 let value = match (name.text.to_ascii_uppercase().as_str(), counter.narrow) {
+                    _ if counter.is_empty(name.text) => format!("{owner}.ACC <= 0"),
                     ("CV", Some(conversion)) => format!("{conversion}({owner}.ACC)"),
                     ("CV", None) => format!("{owner}.ACC"),
-                    ("QD", _) => format!("{owner}.ACC <= 0"),
                     _ => format!("{owner}.DN"),
                 };
-                let not = if *negated { "NOT " } else { "" };
-                lines.push(format!("{} := {not}{value}", self.apply(start, end)));
+                let value = if *negated { format!("NOT ({value})") } else { value };
+                lines.push(format!("{} := {value}", self.apply(start, end)));
             }
         }
         self.replace(span, lines.join("; "));

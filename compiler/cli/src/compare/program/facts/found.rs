@@ -23,6 +23,8 @@ pub struct Facts {
     /// From the states of PROGRAMs and the globals.
     pub(super) written_ways: HashSet<Way>,
     pub(super) read: HashSet<Name>,
+    /// Arrays that nothing writes: where the elements before an index are others than those from it on.
+    pub(super) tables: HashMap<Name, Vec<i128>>,
     /// Every constant of the program that is a whole number or a time.
     pub constants: BTreeSet<i128>,
     /// Every text of the program.
@@ -72,8 +74,24 @@ impl Facts {
         self.written.contains(&name) || self.written_ways.iter().any(|it| it.meets(way))
     }
 
+    /// Whether a statement writes anything in the variable that `whole` leads to, which this is a part of.
+    pub fn is_written_around(&self, name: Name, way: &Way, whole: usize) -> bool {
+        let is_member = way.members.len() > whole;
+        let beside = |it: &Name| match (*it, name) {
+            (Name::Field(a, _), Name::Field(b, _)) => is_member && a == b,
+            (Name::Field(..) | Name::Local(..) | Name::Param(..), _) => false,
+        };
+        let all = Way { from: way.from, members: way.members[..whole].to_vec() };
+        self.is_written(name, &all) || self.written.iter().any(beside)
+    }
+
+    /// Whether it is an element of an array whose elements count as constants.
+    pub fn is_of_table(&self, name: Name) -> bool {
+        self.tables.contains_key(&name)
+    }
+
     /// Whether some statement writes the variable of this declaration, in whatever it is.
-    fn is_written_somewhere(&self, name: Name) -> bool {
+    pub(super) fn is_written_somewhere(&self, name: Name) -> bool {
         let is_it = |way: &Way| match name {
             Name::Field(_, field) => way.members.contains(&field),
             Name::Local(..) | Name::Param(..) => false,

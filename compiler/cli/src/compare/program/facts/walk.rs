@@ -2,6 +2,7 @@
 
 use super::found::Facts;
 use super::numbers::Number;
+use super::table::MAX_CHANGES;
 use crate::compare::program::scalar::Way;
 use crate::compare::program::walked::{Name, Walked};
 use staunch_ir::{
@@ -171,19 +172,35 @@ impl<'p> Walk<'p, '_> {
     /// What an array is indexed with is worth being at its ends, and beyond.
     fn indices(&mut self, place: &Place) {
         let mut ty = self.program.root_type(self.routine, place.root);
+        let mut whole = None;
         for projection in &place.projections {
-            ty = match (projection, ty) {
-                (Projection::Field(field), Some(owner)) => self.program.member(owner, *field),
+            (ty, whole) = match (projection, ty) {
+                (Projection::Field(field), Some(owner)) => {
+                    let name = if let Type::Struct(id) = owner { Some(Name::Field(id, *field)) } else { None };
+                    (self.program.member(owner, *field), name)
+                }
                 (Projection::Index { index, .. }, Some(Type::Array(id))) => {
                     let array = self.program.array(id);
                     for edge in [array.low - 1, array.low, array.high, array.high.saturating_add(1)] {
                         self.compared(index, Number::Integer(i128::from(edge)));
                     }
-                    self.expr(index);
-                    Some(array.element)
+                    self.index(whole, index);
+                    (Some(array.element), None)
                 }
-                (_, other) => other,
+                (_, other) => (other, None),
             };
+        }
+    }
+
+    /// An index of a table decides what is read by where the elements change, any other one by its value.
+    fn index(&mut self, array: Option<Name>, index: &Expr) {
+        let changes = array.and_then(|it| self.facts.tables.get(&it)).cloned();
+        for at in changes.iter().flatten().take(MAX_CHANGES) {
+            self.compared(index, Number::Integer(*at));
+        }
+        match changes {
+            Some(all) if all.len() <= MAX_CHANGES => self.operand(index),
+            Some(_) | None => self.expr(index),
         }
     }
 

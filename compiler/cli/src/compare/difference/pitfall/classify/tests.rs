@@ -1,5 +1,6 @@
 //! Which trap a difference is put down to.
 
+use super::super::advice::Form;
 use super::*;
 use staunch_frontend::Dialect;
 
@@ -13,8 +14,8 @@ const LOGIX: Kind = Kind { family: Family::Logix, repr: Repr::I32, stops: false 
 fn case(to: Kind, before: Pins, now: [Pins; 2]) -> Case {
     let kinds = [IEC, to];
     let (first, restarted, counts_down) = (false, false, false);
-    let (feeds_itself, guards_itself) = (false, false);
-    Case { kinds, before: [before; 2], now, first, restarted, feeds_itself, guards_itself, counts_down }
+    let (feeds_itself, guards_itself, kept_alike) = (false, false, false);
+    Case { kinds, before: [before; 2], now, first, restarted, kept_alike, feeds_itself, guards_itself, counts_down }
 }
 
 fn number(case: Case) -> Option<usize> {
@@ -58,6 +59,9 @@ fn what_happened_before_decides() {
     assert_eq!(number(Case { guards_itself: true, ..guarded }), Some(14));
     let kept = case(LOGIX, count(IDLE, 1), [IDLE, count(IDLE, 1)]);
     assert_eq!(number(Case { restarted: true, ..kept }), Some(11));
+    // Where both keep it, the event is not what parts them.
+    let below = case(CODESYS, IDLE, [count(down, -1), down]);
+    assert_eq!(number(Case { restarted: true, kept_alike: true, ..below }), Some(3));
     let openplc = Kind { family: Family::Openplc, stops: true, ..IEC };
     assert_eq!(number(case(openplc, count(IDLE, 5), [count(up, 6), count(up, 5)])), Some(15));
     let done = Pins { done: true, ..IDLE };
@@ -76,9 +80,11 @@ fn what_the_rules_rule_out_has_a_reason() {
 fn every_pitfall_says_what_to_do() {
     for (pitfall, number) in Pitfall::all().zip(1..) {
         assert_eq!(pitfall.number(), number);
-        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape);
+        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape, Form::Up);
         assert!(pitfall.sentence().ends_with('.') && advice.ends_with('.'), "{number}");
-        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys);
+        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys, Form::Up);
+        let both = pitfall.advice(Dialect::Iec, Dialect::Logix, Form::UpDown);
+        assert!(!both.contains("CTU(") && !both.contains("CTD("), "a CTUD is no CTU: {both}");
         assert!(!reset.contains("R := ") || reset.contains("RESET := "), "{reset}");
     }
 }

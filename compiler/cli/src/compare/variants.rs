@@ -1,0 +1,135 @@
+//! What the vendors' documents leave open about the blocks of a program: each answer is a program of its own, and no
+//! verdict rests on one of them alone.
+
+use super::pair::Pair;
+use super::verdict::Verdict;
+use crate::session::Session;
+use staunch_build::Project;
+use staunch_frontend::{OPEN_OPTIONS, OpenOption, Options, Sources};
+use staunch_ir::Program;
+
+/// Options of one program that are tried in all combinations; further ones keep their setting.
+const MAX_OPTIONS: usize = 3;
+
+/// An answer to each question that the program raises.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Variant {
+    settings: Vec<(usize, bool)>,
+}
+
+/// What a variant that is not shown came to.
+#[derive(Debug)]
+pub struct Other {
+    pub variant: Variant,
+    pub verdict: &'static str,
+    pub scans: Option<usize>,
+}
+
+impl Variant {
+    /// As the project has it.
+    pub fn own(session: &Session, pair: &Pair) -> Result<Self, String> {
+        let blocks = || pair.sides.iter().flat_map(|it| &it.scalars.blocks);
+        let used = OPEN_OPTIONS.iter().enumerate().filter(|(_, row)| blocks().any(|it| row.decides(it.block)));
+        let settings = used.take(MAX_OPTIONS).map(|(at, row)| Ok((at, session.is_on(row.option)?)));
+        Ok(Self { settings: settings.collect::<Result<_, String>>()? })
+    }
+
+    /// The other combinations.
+    pub fn others(&self) -> Vec<Self> {
+        let flipped = |mask: usize| {
+            let setting = |(bit, (at, is_on)): (usize, &(usize, bool))| (*at, *is_on != (mask >> bit & 1 == 1));
+            Self { settings: self.settings.iter().enumerate().map(setting).collect() }
+        };
+        (1..1 << self.settings.len()).map(flipped).collect()
+    }
+
+    /// Both sides' programs, where both systems accept them.
+    pub fn programs(
+        &self,
+        from: &Session,
+        to: (&Sources, staunch_frontend::Dialect),
+        asked: Option<&str>,
+    ) -> Result<Option<[Program; 2]>, String> {
+        let set = |options: Options| {
+            self.settings.iter().fold(options, |options, (at, is_on)| options.with(OPEN_OPTIONS[*at].option, *is_on))
+        };
+        let ours = from.with_options(&from.sources, None, set)?;
+        let theirs = from.with_options(to.0, Some(to.1), set)?;
+        let (Some(ours), Some(theirs)) = (ours, theirs) else { return Ok(None) };
+        Ok(Some([from.choose(&ours, asked)?, from.choose(&theirs, asked)?]))
+    }
+
+    /// Whether the project file has all these settings.
+    pub fn is_decided(&self, project: &Project) -> bool {
+        self.rows().all(|it| project.has(it.0.name))
+    }
+
+    fn rows(&self) -> impl Iterator<Item = (&'static OpenOption, bool)> {
+        self.settings.iter().map(|(at, is_on)| (&OPEN_OPTIONS[*at], *is_on))
+    }
+
+    /// As lines of `staunch.toml`, for a sentence.
+    pub fn words(&self) -> String {
+        let lines: Vec<String> = self.rows().map(|(row, is_on)| format!("`{}`", row.line(is_on))).collect();
+        lines.join(" and ")
+    }
+
+    pub fn questions(&self) -> Vec<&'static str> {
+        self.rows().map(|it| it.0.question).collect()
+    }
+
+    /// As an object of JSON.
+    pub fn object(&self) -> String {
+        let quoted = staunch_host::json_text;
+        let pair = |(row, is_on): (&OpenOption, bool)| {
+            let setting = row.settings[usize::from(is_on)];
+            let plain = matches!(setting, "false" | "true");
+            format!("{}:{}", quoted(row.name), if plain { setting.to_owned() } else { quoted(setting) })
+        };
+        format!("{{{}}}", self.rows().map(pair).collect::<Vec<_>>().join(","))
+    }
+}
+
+impl Other {
+    pub fn of(variant: Variant, verdict: &Verdict, rest: Option<&Verdict>) -> Self {
+        let scans = match verdict {
+            Verdict::Differs { rows, .. } => Some(rows.len()),
+            Verdict::Equal(_) | Verdict::NotFound { .. } => None,
+        };
+        let verdict = match (weight(verdict, rest), scans) {
+            (Weight::Equal, None) => "equal",
+            (Weight::Equal, Some(_)) => "equal beyond what is accepted",
+            (Weight::NotFound, _) => "not found",
+            (Weight::Differs, _) => "different",
+        };
+        Self { variant, verdict, scans }
+    }
+
+    /// As the end of a sentence.
+    pub fn words(&self) -> String {
+        match (self.verdict, self.scans) {
+            ("different", Some(1)) => "the two differ after 1 scan".to_owned(),
+            ("different", Some(scans)) => format!("the two differ after {scans} scans"),
+            ("not found", _) => "no difference was found, and none is ruled out".to_owned(),
+            ("rejected", _) => "one of the two systems rejects the program".to_owned(),
+            (other, _) => format!("the two are {other}"),
+        }
+    }
+}
+
+/// How much a verdict asks for, the least first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Weight {
+    Equal,
+    NotFound,
+    Differs,
+}
+
+/// Of a verdict, and of what the search beyond accepted findings came to.
+pub fn weight(verdict: &Verdict, rest: Option<&Verdict>) -> Weight {
+    match (verdict, rest) {
+        (Verdict::Differs { .. }, None | Some(Verdict::Differs { .. })) => Weight::Differs,
+        (Verdict::NotFound { .. }, _) | (Verdict::Differs { .. }, Some(Verdict::NotFound { .. })) => Weight::NotFound,
+        (Verdict::Equal(_), _) | (Verdict::Differs { .. }, Some(Verdict::Equal(_))) => Weight::Equal,
+    }
+}

@@ -1,0 +1,287 @@
+//! `staunch compare` claims no more than it has shown. What each program must come to follows from the systems' rules,
+//! which the test names.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+fn folder() -> PathBuf {
+    let path = std::env::temp_dir().join(format!("staunch-compare-claims-{}", std::process::id()));
+    std::fs::create_dir_all(&path).expect("a folder");
+    path
+}
+
+/// A file of the test's own.
+fn written(name: &str, text: &str) -> String {
+    let path = folder().join(name);
+    std::fs::write(&path, text).expect("a file");
+    path.display().to_string()
+}
+
+/// The exit code, and what is printed.
+fn compare(name: &str, source: &str, arguments: &[&str]) -> (Option<i32>, String) {
+    let path = written(&format!("{name}.st"), source);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    let output = command.args(["compare", &path]).args(arguments).output().expect("it starts");
+    (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// `c.CV > 2` holds on IEC alone, and decides the motor: that the counter's finding is accepted does not accept that.
+const MOTOR: &str = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c, d : CTU; END_VAR
+VAR_OUTPUT motor, lamp : BOOL; END_VAR
+c(CU := s, R := r, PV := 2);
+motor := c.CV > 2;
+d(CU := s, R := r, PV := 3);
+lamp := d.Q;
+END_PROGRAM
+";
+
+/// An output needs a line of its own, and `*` is none.
+#[test]
+fn an_accepted_counter_does_not_accept_an_output() {
+    let counters = written("counters.txt", "c 15: nobody reads the count past its preset\nd 15: same\n");
+    let (code, text) = compare("motor", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &counters]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Not accepted: `motor output`.") && text.contains("`motor output: reason`"), "{text}");
+    let all = written("all.txt", "* 15: nobody reads the count past its preset\n* output: nobody looks\n");
+    let (code, text) = compare("motor_all", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &all]);
+    assert_eq!(code, Some(1), "{text}");
+    let own = written("own.txt", "c 15: nobody reads it\nd 15: same\nmotor output: it is not wired\n");
+    let (code, text) = compare("motor_own", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &own]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("not compared after an accepted finding: c.Q, c.CV, d.Q, d.CV, motor."), "{text}");
+}
+
+/// What `--vars` names is compared until a line names it, and so is what lies at `%Q`; a variable inside follows.
+#[test]
+fn what_is_named_and_what_is_wired_are_outputs() {
+    let plain = MOTOR.replace("VAR_OUTPUT motor", "VAR motor");
+    let counters = written("counters_of_vars.txt", "c 15: nobody reads the count past its preset\nd 15: same\n");
+    let arguments = ["--from", "iec", "--to", "openplc", "--accept", counters.as_str()];
+    let (code, text) = compare("inside", &plain, &arguments);
+    assert_eq!(code, Some(0), "{text}");
+    let (code, text) = compare("named", &plain, &[&arguments[..], &["--vars", "motor,lamp"]].concat());
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Not accepted: `motor output`."), "{text}");
+    let wired = MOTOR.replace("VAR_OUTPUT motor, lamp : BOOL;", "VAR motor AT %QX0.0 : BOOL; lamp : BOOL;");
+    let (code, text) = compare("wired", &wired, &arguments);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Not accepted: `motor output`."), "{text}");
+}
+
+/// A program with a table that it only reads: `over` follows from the count alone where an element is 7.
+fn table(declared: &str, condition: &str) -> String {
+    format!(
+        "PROGRAM p
+VAR_INPUT part : BOOL; size : INT(0..1000); END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; END_VAR
+{declared}
+c(CU := part, R := c.CV > 4, PV := 2);
+over := c.CV > 2 AND {condition};
+END_PROGRAM
+"
+    )
+}
+
+const TO_OPENPLC: [&str; 6] = ["--from", "iec", "--to", "openplc", "--vars", "over"];
+
+/// Nothing writes the table, so no element is 7, also not one that starts at 0; it can be assumed to be written.
+#[test]
+fn a_table_that_is_only_read_is_no_input() {
+    let tables = [
+        ("array", "VAR t : ARRAY[0..3] OF INT := [0, 10, 20, 30]; END_VAR", "t[size MOD 4] = 7"),
+        ("zeros", "VAR t : ARRAY[0..3] OF INT; END_VAR", "t[size MOD 4] = 7"),
+        ("members", "VAR t : STRUCT a, b : INT := 3; z : INT; END_STRUCT; END_VAR", "t.z = 7"),
+        ("rows", "VAR t : ARRAY[0..3, 0..1] OF INT := [0, 10, 20, 30, 0]; END_VAR", "t[size MOD 4, 0] = 7"),
+    ];
+    for (name, declared, condition) in tables {
+        let (code, text) = compare(name, &table(declared, condition), &TO_OPENPLC);
+        assert!(text.contains("nothing writes t"), "{name}: {text}");
+        assert!(!text.contains("differ after"), "{name}: {text}");
+        assert_ne!(code, Some(1), "{name}: {text}");
+    }
+    let source = table(tables[0].1, "t[0] = 7");
+    let (code, text) = compare("not_assumed", &source, &TO_OPENPLC);
+    assert_eq!(code, Some(0), "{text}");
+    let assumed = written("assumed.txt", "t[0] 0..10\n");
+    let (code, text) = compare("assumed", &source, &[&TO_OPENPLC[..], &["--assume", &assumed]].concat());
+    assert_eq!(code, Some(1), "{text}");
+    // What is RETAIN, or has an address, is there for the world outside to write.
+    for declared in ["VAR RETAIN t : ARRAY[0..1] OF INT; END_VAR", "VAR t AT %MW0 : ARRAY[0..1] OF INT; END_VAR"] {
+        let (code, text) = compare("from_outside", &table(declared, "t[0] = 7"), &TO_OPENPLC);
+        assert_eq!(code, Some(1), "{text}");
+    }
+    let written = table(tables[0].1, "t[0] = 7").replace("over :=", "IF size = 9 THEN t[0] := 7; END_IF over :=");
+    let (code, text) = compare("written", &written, &TO_OPENPLC);
+    assert_eq!(code, Some(1), "{text}");
+}
+
+/// An index is tried where the elements change, which is all that it decides.
+#[test]
+fn a_long_table_is_looked_up_where_it_changes() {
+    let of = |value: u32| {
+        let declared = format!("VAR t : ARRAY[0..1000] OF INT := [613(0), {value}, 387(0)]; END_VAR");
+        table(&declared, "t[size] = 7")
+    };
+    let started = std::time::Instant::now();
+    let (code, text) = compare("long", &of(7), &TO_OPENPLC);
+    assert_eq!(code, Some(1), "{text}");
+    let passed = started.elapsed();
+    assert!(passed.as_secs() < 4, "a look-up of 1,000 elements took {passed:?}");
+    let (code, text) = compare("long_equal", &of(8), &TO_OPENPLC);
+    assert_eq!(code, Some(0), "{text}");
+}
+
+/// The count passes PV on IEC; on CODESYS it does by some of its documents, and stops by others (Beckhoff's older page of
+/// Tc2_Standard: "CV is increased by 1 as long as CV is less than PV").
+#[test]
+fn what_a_vendor_leaves_open_is_tried_both_ways() {
+    let source = |reset: &str| {
+        format!(
+            "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(s, {reset}, 3);
+over := c.CV > 3;
+END_PROGRAM
+"
+        )
+    };
+    let arguments = |from: &'static str, to: &'static str| ["--from", from, "--to", to, "--vars", "over"];
+    let passes = source("c.CV > 5");
+    for (from, to, shown, other) in [
+        ("iec", "codesys", "`ctu-stop-at-pv = true`", "With `ctu-stop-at-pv = false`, the two are equal."),
+        ("codesys", "openplc", "`ctu-stop-at-pv = false`", "With `ctu-stop-at-pv = true`, the two are equal."),
+    ] {
+        let no_run = written("no_run.txt", "no run\n");
+        let (code, text) = compare("open", &passes, &[&arguments(from, to)[..], &["--assume", &no_run]].concat());
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(&format!("The verdict above is with {shown}. {other}")), "{text}");
+    }
+    // What never reaches its preset is the same either way, and that is said.
+    let below = source("c.CV > 1");
+    let no_run = written("no_run.txt", "no run\n");
+    let arguments = [&arguments("iec", "codesys")[..], &["--assume", &no_run]].concat();
+    let (code, text) = compare("open_below", &below, &arguments);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("With `ctu-stop-at-pv = true`, the two are equal."), "{text}");
+    let (_, json) = compare("open_json", &below, &[&arguments[..], &["--message-format", "json"]].concat());
+    let settings = "\"settings\":{\"ctu-stop-at-pv\":false},\"other_settings\":[{\"settings\":{\"ctu-stop-at-pv\":true},\"verdict\":\"equal\"}]";
+    assert!(json.contains(settings), "{json}");
+}
+
+/// A project that has asked its vendor decides it.
+#[test]
+fn what_the_project_decides_is_the_verdict() {
+    let folder = folder().join("decided");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\n").expect("a project file");
+    let source = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(s, c.CV > 5, 3);
+over := c.CV > 3;
+END_PROGRAM
+";
+    let arguments = ["--from", "iec", "--to", "codesys", "--vars", "over", "--assume"];
+    let no_run = written("never_run.txt", "no run\n");
+    let (code, text) = compare("decided/p", source, &[&arguments[..], &[no_run.as_str()]].concat());
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("With `ctu-stop-at-pv = true`, the two differ after 7 scans."), "{text}");
+}
+
+/// Both systems keep a RETAIN count in every event: a count below 0 is trap 3 there, whatever happens before it.
+#[test]
+fn a_restart_is_blamed_where_both_keep_nothing_alike() {
+    let source = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR RETAIN c : CTD; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+c(s, l, 3);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let accepted = written("below.txt", "c 3: the count below 0 is not used\n");
+    let (code, text) = compare("kept", source, &["--from", "iec", "--to", "codesys", "--accept", &accepted]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(!text.contains("reachable after 2 scans: trap 11"), "{text}");
+    assert!(text.contains("Not accepted: `o output`."), "{text}");
+}
+
+/// `lamp` follows from the second counter; the first parts before it, and decides nothing of it.
+#[test]
+fn the_counter_that_is_blamed_decides_the_difference() {
+    for input in ["s", "s OR c.CV > 90"] {
+        let source = format!(
+            "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c, d : CTU; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+c(CU := s, R := r, PV := 2);
+d(CU := {input}, R := r, PV := 3);
+lamp := d.CV > 5;
+END_PROGRAM
+"
+        );
+        let (code, text) = compare("blame", &source, &["--from", "iec", "--to", "openplc", "--vars", "lamp"]);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("Trap 15 (`d`)"), "{text}");
+    }
+}
+
+/// No flag of Logix is Q of a CTD, which is TRUE while nothing is left: DN is TRUE while ACC >= PRE (1756-RM003, "CTD").
+#[test]
+fn the_port_of_a_ctd_asks_for_what_is_left() {
+    let source = "PROGRAM p
+VAR_INPUT s, ld : BOOL; END_VAR
+VAR RETAIN k : CTD; e : R_TRIG; END_VAR
+VAR_OUTPUT empty, some : BOOL; END_VAR
+e(CLK := s); k(CD := e.Q, LD := ld, PV := 3, Q => empty);
+some := NOT k.Q;
+END_PROGRAM
+";
+    let file = folder().join("port.st").display().to_string();
+    let arguments = ["--from", "iec", "--to", "logix", "--vars", "empty,some", "--write", &file];
+    let (_, text) = compare("ctd", source, &arguments);
+    assert!(!text.contains("Trap 4"), "{text}");
+    let port = std::fs::read_to_string(&file).expect("it is written");
+    assert!(port.contains("empty := k.ACC <= 0") && port.contains("some := NOT (k.ACC <= 0);"), "{port}");
+}
+
+/// What is written for Logix says which of its lines are rungs in Studio 5000: CTU, CTD and RES are there in ladder only.
+#[test]
+fn what_is_written_says_what_is_ladder() {
+    let source = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(CU := s, R := r, PV := 3);
+END_PROGRAM
+";
+    let path = written("ladder.st", source);
+    let file = folder().join("written.st").display().to_string();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    command.args(["compare", &path, "--from", "iec", "--to", "logix", "--write", &file]);
+    let output = command.output().expect("it starts");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("Studio 5000 has CTU and RES in ladder only") && said.contains("(line 4)"), "{said}");
+}
+
+/// A CTUD on Logix is no CTU, so that advice for one is not given for the other.
+#[test]
+fn advice_is_for_the_kind_of_counter() {
+    let source = "PROGRAM p
+VAR_INPUT up, down, r : BOOL; END_VAR
+VAR c : CTUD; END_VAR
+VAR_OUTPUT full : BOOL; END_VAR
+c(CU := up, CD := down, R := r, LD := FALSE, PV := 5); full := c.QU;
+END_PROGRAM
+";
+    let (code, text) = compare("both_ways", source, &["--from", "iec", "--to", "logix"]);
+    assert_eq!(code, Some(1), "{text}");
+    let advice = text.lines().find(|it| it.starts_with("What to do: ")).unwrap_or_default();
+    assert!(advice.contains("CTUD(c)") && !advice.contains("CTU(c"), "{text}");
+}
