@@ -34,6 +34,8 @@ pub struct File<'s> {
     pub undecided: Vec<Span>,
     /// The first name that is the word CONFIGURATION, which most dialects reserve.
     pub reserved: Option<Span>,
+    /// For each `a += b`, which is read as `a := a + (b)`: what is reported where the dialect does not have it.
+    pub combined: Vec<crate::Diagnostic>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.

@@ -338,6 +338,12 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// The body of a FUNCTION or FUNCTION_BLOCK that declares an input EN, and no ENO, runs while EN is TRUE. MATIEC's C
+    /// begins with `if (!EN) return`, and its PROGRAMs know no EN. In the other dialects such an input is like any other.
+    pub const fn runs_while_enabled(self) -> bool {
+        matches!(self, Self::Iec | Self::Openplc)
+    }
+
     /// A POU's own EN and ENO are inputs and outputs like any other.
     pub const fn declares_plain_enable(self) -> bool {
         matches!(self, Self::Codesys)
@@ -358,9 +364,24 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// `a := b := c` assigns to both.
-    pub const fn assigns_in_a_row(self) -> bool {
+    /// A CONSTANT may be PERSISTENT, as the parameters of TwinCAT's building automation are (TF8040).
+    pub const fn has_persistent_constants(self) -> bool {
         matches!(self, Self::Codesys)
+    }
+
+    /// `a := b := c` assigns to both: CODESYS, and SIMATIC as "multiple assignment".
+    pub const fn assigns_in_a_row(self) -> bool {
+        matches!(self, Self::Codesys | Self::Siemens)
+    }
+
+    /// An assignment in parentheses is a value.
+    pub const fn assigns_in_expressions(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `a += b` and the like, which SIMATIC calls a combined assignment.
+    pub const fn combines_assignments(self) -> bool {
+        matches!(self, Self::Siemens)
     }
 
     /// An enumeration's value is a number where an index is asked for, and counts in a FOR.

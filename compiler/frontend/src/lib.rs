@@ -219,12 +219,20 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     log.asked_attributes = declared::asked_attributes(&files, sources);
     files.iter().for_each(|it| log.read_pragmas(it));
     files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
+    files.iter_mut().flat_map(|it| std::mem::take(&mut it.combined)).for_each(|it| report_combined(it, log));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
     start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     Trees { files, groups, stubs, allowances, has_tests }
+}
+
+/// Reports `a += b` where the dialect does not have it.
+fn report_combined(problem: Diagnostic, log: &mut Log<'_>) {
+    if !log.dialect(problem.span).combines_assignments() {
+        log.report(problem);
+    }
 }
 
 /// Reports a name that is a word of the standard's, in dialects that keep it for that.

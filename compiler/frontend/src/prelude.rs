@@ -32,6 +32,12 @@ impl Unit {
         self.use_ == Use::Function
     }
 
+    /// Whether what it declares is one thing by its own name.
+    fn has_own_name(&self) -> bool {
+        let is_alone = matches!(self.use_, Use::Type | Use::Function | Use::Value);
+        is_alone && self.text != LINE_END
+    }
+
     pub fn is_value(&self) -> bool {
         self.use_ == Use::Value
     }
@@ -378,6 +384,36 @@ struct Named {
     unit: Unit,
     at: Span,
     dialect: Dialect,
+    /// After the name of its library: it is there whatever the program declares.
+    is_qualified: bool,
+    /// The program declares its name: the unit has [another](renamed).
+    is_taken: bool,
+}
+
+/// The name of a unit whose own name the program has.
+pub(crate) fn renamed(name: &str) -> String {
+    format!("__own_{name}")
+}
+
+/// A unit's text, with other names for units whose names the program has. Names after a point are members.
+fn with_own_names(text: &str, taken: &[&str]) -> String {
+    if taken.is_empty() {
+        return text.to_owned();
+    }
+    let tokens = lex_with(0, text, &[], Known::Never);
+    let mut made = String::with_capacity(text.len());
+    let mut copied = 0;
+    for (at, (kind, place)) in tokens.kinds.iter().zip(&tokens.places).enumerate() {
+        let place = range(*place);
+        let is_member = at > 0 && tokens.kinds[at - 1] == Kind::Dot;
+        let word = text.get(place.clone()).unwrap_or_default();
+        if *kind == Kind::Name && !is_member && is_one_of(taken, word) {
+            made.push_str(&text[copied..place.start]);
+            made.push_str(&renamed(word));
+            copied = place.end;
+        }
+    }
+    made + &text[copied..]
 }
 
 /// The sources with what they name of the library after them.
@@ -400,9 +436,10 @@ impl Extended {
             return None;
         }
         let mut sources = sources.clone();
+        let taken: Vec<_> = named.iter().filter(|it| it.is_taken).map(|it| it.unit.name).collect();
         for it in &named {
-            let text = format!("{{dialect '{}'}} {}", it.dialect.name(), it.unit.text);
-            sources.add(Source::new(format!("library/{}.st", it.unit.name.to_ascii_lowercase()), text));
+            let text = format!("{{dialect '{}'}} {}", it.dialect.name(), with_own_names(it.unit.text, &taken));
+            sources.add(Source::new(format!("library/{}.st", it.unit.name.to_ascii_lowercase()), text).bundled());
         }
         Some(Self { sources, named })
     }
@@ -444,6 +481,9 @@ impl Named {
 struct Uses {
     named: Vec<Named>,
     declared: FxHashSet<&'static str>,
+    /// In a NAMESPACE, which others see by its name, or by USING.
+    declared_in_spaces: FxHashSet<&'static str>,
+    uses_spaces: bool,
 }
 
 impl Uses {
@@ -466,11 +506,15 @@ impl Uses {
             let (start, end) = tokens.places[at];
             let before = at.checked_sub(1).map(|it| tokens.kinds[it]);
             heads.see(word(at), (1..5).map(|it| word(at + it)));
+            types.spaces += u32::from(word(at).eq_ignore_ascii_case("NAMESPACE"));
+            self.uses_spaces |= word(at).eq_ignore_ascii_case("USING");
             if dialect == Dialect::Codesys && heads.hand_on_any(word(at), before) {
                 self.named.extend(unit(ANY, dialect).map(|unit| Named {
                     unit,
                     at: Span { file, start, end },
                     dialect,
+                    is_qualified: false,
+                    is_taken: false,
                 }));
             }
             let is_space = is_system(word(at)) && tokens.kinds.get(at + 1) == Some(&Kind::Dot);
@@ -499,25 +543,35 @@ impl Uses {
                 Use::Value | Use::Global => declares(before, after, &types) || types.declare_value(before, after),
                 Use::Open => false,
             };
-            if is_declared {
+            if is_declared && types.spaces > 0 && any.use_ != Use::Space {
+                self.declared_in_spaces.insert(any.name);
+            } else if is_declared {
                 self.declared.insert(any.name);
             } else if let Some(unit) = unit.filter(|it| names(it, before, after)) {
-                self.named.push(Named { unit, at: Span { file, start, end }, dialect });
+                let is_qualified = first < at;
+                self.named.push(Named { unit, at: Span { file, start, end }, dialect, is_qualified, is_taken: false });
             }
         }
     }
 
     /// Each once, with what it needs.
-    fn needed(self) -> Vec<Named> {
+    fn needed(mut self) -> Vec<Named> {
+        if self.uses_spaces {
+            self.declared.extend(&self.declared_in_spaces);
+        }
         let mut needed: Vec<Named> = Vec::new();
         let mut waiting: Vec<Named> = self.named.into_iter().rev().collect();
         while let Some(it) = waiting.pop() {
             let known = needed.iter().any(|known| known.unit.name == it.unit.name);
-            if known || self.declared.contains(it.unit.name) {
+            let is_taken = self.declared.contains(it.unit.name);
+            let stays = it.is_qualified && it.unit.has_own_name();
+            if known || is_taken && !stays {
                 continue;
             }
-            needed.push(it);
-            waiting.extend(it.unit.needs.iter().filter_map(|name| Some(Named { unit: unit(name, it.dialect)?, ..it })));
+            needed.push(Named { is_taken, ..it });
+            // What the library needs is the library's.
+            let inner = |name: &&str| Some(Named { unit: unit(name, it.dialect)?, is_qualified: true, ..it });
+            waiting.extend(it.unit.needs.iter().filter_map(inner));
         }
         needed
     }
@@ -532,15 +586,22 @@ struct TypeBlock {
     is_list: bool,
     /// What it declares has no name without its list's.
     is_qualified: bool,
+    /// After the colon of a declaration, up to its semicolon: types and values.
+    in_value: bool,
+    /// How many NAMESPACEs are open.
+    spaces: u32,
 }
 
 impl TypeBlock {
     fn see(&mut self, kind: Kind) {
         match kind {
             Kind::Type | Kind::VarGlobal => {
-                *self = Self { open: true, is_list: kind == Kind::VarGlobal, ..Self::default() };
+                *self = Self { open: true, is_list: kind == Kind::VarGlobal, spaces: self.spaces, ..Self::default() };
             }
+            Kind::Colon => self.in_value = true,
+            Kind::Semicolon => self.in_value = false,
             Kind::EndType | Kind::EndVar => self.open = false,
+            Kind::EndNamespace => self.spaces = self.spaces.saturating_sub(1),
             Kind::Struct => self.structures += 1,
             Kind::EndStruct => self.structures = self.structures.saturating_sub(1),
             _ => {}
@@ -553,8 +614,7 @@ impl TypeBlock {
         if !self.open || self.structures > 0 || self.is_qualified {
             false
         } else if self.is_list {
-            let is_first = !matches!(before, Some(Kind::Assign | Kind::OpenBracket | Kind::OpenParen));
-            is_first && matches!(after, Some(Kind::Colon | Kind::Comma | Kind::At))
+            !self.in_value && matches!(after, Some(Kind::Colon | Kind::Comma | Kind::At))
         } else {
             matches!(before, Some(Kind::OpenParen | Kind::Comma))
         }
@@ -601,7 +661,7 @@ impl Heads {
 fn is_qualified_only(tokens: &Tokens<'_>, at: usize) -> bool {
     let from = at.checked_sub(1).map_or(0, |it| tokens.places[it].1);
     let here = tokens.pragmas.iter().filter(|it| (from..tokens.places[at].0).contains(&it.span.start));
-    here.into_iter().any(|it| it.text.contains("qualified_only"))
+    here.into_iter().any(|it| it.text.to_ascii_lowercase().contains("qualified_only"))
 }
 
 /// Whether a name between these tokens is declared there.

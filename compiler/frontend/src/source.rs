@@ -37,6 +37,8 @@ pub struct Source {
     origin: Option<Box<Origin>>,
     /// Of a library: its name.
     library: Option<Box<str>>,
+    /// It is a part of the compiler, whatever its path is.
+    is_bundled: bool,
 }
 
 /// The file that a text is made of.
@@ -120,7 +122,7 @@ impl Source {
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
         let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
         let (encoding, line) = (Encoding::default(), Hint::default());
-        Self { path: path.into(), text, lines, line, characters, encoding, origin: None, library: None }
+        Self { path: path.into(), text, lines, line, characters, encoding, origin: None, library: None, is_bundled: false }
     }
 
     /// The Structured Text in a file, also in one of another system's.
@@ -179,6 +181,21 @@ impl Source {
     #[must_use]
     pub fn of_library(self, name: &str) -> Self {
         Self { library: Some(name.into()), ..self }
+    }
+
+    /// The same, as a unit of the library that the compiler brings along.
+    #[must_use]
+    pub(crate) fn bundled(self) -> Self {
+        Self { is_bundled: true, ..self }
+    }
+
+    pub(crate) fn is_bundled(&self) -> bool {
+        self.is_bundled
+    }
+
+    /// Whether it is that unit of the library, and not a file of the user's with its path.
+    pub(crate) fn is_unit(&self, path: &str) -> bool {
+        self.is_bundled && self.path == path
     }
 
     pub fn is_of_library(&self) -> bool {

@@ -149,7 +149,9 @@ fn starts<'s>(pou: &mut Pou<'s>, addresses: Addresses<'s>) {
     match pou.kind {
         PouKind::Program => {
             pou.blocks.push(variables(&[(flag, &["BOOL"])], at));
-            pou.routines.push(method(once(flag, at, addresses), at, OF_PROGRAM));
+            // One that another calls starts as an instance does.
+            let marks = marks(&addresses);
+            pou.routines.push(Pou { attributes: marks, ..method(once(flag, at, addresses), at, OF_PROGRAM) });
             pou.body.insert(0, call(MEMBERS, at));
         }
         PouKind::Test => {
@@ -157,7 +159,7 @@ fn starts<'s>(pou: &mut Pou<'s>, addresses: Addresses<'s>) {
             pou.body.splice(0..0, once(flag, at, addresses));
         }
         PouKind::FunctionBlock | PouKind::Class => {
-            let marks = if addresses.is_empty() { Vec::new() } else { vec![ADDRESSES] };
+            let marks = marks(&addresses);
             let body = addresses.around(vec![call(MEMBERS, at)]);
             pou.routines.push(Pou { attributes: marks, ..method(body, at, OF_INSTANCE) });
         }
@@ -168,6 +170,10 @@ fn starts<'s>(pou: &mut Pou<'s>, addresses: Addresses<'s>) {
         | PouKind::Getter
         | PouKind::Setter => {}
     }
+}
+
+fn marks(addresses: &Addresses<'_>) -> Vec<&'static str> {
+    if addresses.is_empty() { Vec::new() } else { vec![ADDRESSES] }
 }
 
 /// What is said of the METHOD of an instance.

@@ -110,6 +110,31 @@ fn a_suite_runs_as_it_is_on_every_back_end() {
     }
 }
 
+/// What is not a number is within no distance of anything; infinity is at no distance of itself.
+#[test]
+fn what_is_not_a_number_is_near_nothing() {
+    let folder = Folder::new("tcunit_and_nan");
+    let source = "{dialect 'twincat'}
+FUNCTION_BLOCK T EXTENDS TcUnit.FB_TestSuite
+VAR n, z, i : REAL; a, b : ARRAY[0..1] OF LREAL; END_VAR
+    n := z / z; i := 1.0 / z; b[1] := n;
+    TEST('found'); AssertEquals_REAL(1.0, n, 0.1, 'x'); TEST_FINISHED();
+    TEST('expected'); AssertEquals_LREAL(n, 1.0, 0.1, 'x'); TEST_FINISHED();
+    TEST('element'); AssertArrayEquals_LREAL(a, b, 0.1, 'x'); TEST_FINISHED();
+    TEST('far'); AssertEquals_REAL(1.0, i, 0.1, 'x'); TEST_FINISHED();
+    TEST('the same'); AssertEquals_REAL(i, i, 0.1, 'x'); TEST_FINISHED();
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR t : T; END_VAR
+    TcUnit.RUN();
+END_PROGRAM
+";
+    folder.write("t.st", source);
+    let ran = folder.staunch("test t.st");
+    assert_eq!(ran.code, 1, "{}", ran.err);
+    has(&ran.out, &["FAILED  T.found", "FAILED  T.expected", "FAILED  T.element", "FAILED  T.far", "ok      T.the same"]);
+}
+
 #[test]
 fn a_filter_chooses_among_the_tests_of_a_suite() {
     let folder = Folder::new("a_filtered_tcunit_suite");

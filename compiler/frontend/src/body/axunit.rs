@@ -52,7 +52,8 @@ impl<'s> Checker<'_, 's> {
             return Some(());
         };
         let name = self.decl.pous[slot].ast.name;
-        if !LIBRARIES.contains(&self.decl.log.sources.get(name.span.file).path.as_str()) {
+        let source = self.decl.log.sources.get(name.span.file);
+        if !LIBRARIES.iter().any(|it| source.is_unit(it)) {
             return None;
         }
         let in_full = self.decl.name_in_full(name);

@@ -175,7 +175,7 @@ fn check_body<'s>(
     checker.is_covered = checker.decl.is_covered(slot) && !checker.is_suite();
     checker.initial_outputs(&signature);
     if pou.kind != ast::PouKind::Action {
-        checker.own_enable(&signature, pou.name.span);
+        checker.own_enable(&signature, (pou.kind, pou.name.span), statements);
     }
     checker.edge_inputs(&signature, pou.name.span);
     checker.mocked_result(slot, pou.name.span);

@@ -270,7 +270,7 @@ impl<'s> Checker<'_, 's> {
             let message = "an assignment has no value, and one variable on its left";
             self.report(
                 Diagnostic::new(Code::E0512, span, message)
-                    .label("several assignments in a row are an extension of CODESYS")
+                    .label("several assignments in a row are an extension of CODESYS and SIMATIC")
                     .help("write one statement for each variable"),
             );
             targets.iter().for_each(|it| drop(self.place(it)));

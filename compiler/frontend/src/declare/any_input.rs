@@ -25,7 +25,7 @@ impl<'s> Declarations<'s> {
     pub(super) fn note_any_inputs(&mut self, bodies: &[Vec<ast::Statement<'s>>]) {
         let mut all = self.types.iter();
         let is_it = |it: ast::Name<'_>| {
-            it.text == "AnyType" && self.log.sources.get(it.span.file).path == "library/__system.st"
+            it.text == "AnyType" && self.log.sources.get(it.span.file).is_unit("library/__system.st")
         };
         let Some(structure) = all.position(|it| is_it(it.decl.name)) else { return };
         self.table.any.structure = Some(structure);

@@ -81,8 +81,9 @@ impl<'s> Declarations<'s> {
 
     /// Reports a block that is both RETAIN and NON_RETAIN, or CONSTANT and one of them.
     pub(super) fn check_retain_once(&mut self, block: &ast::VarBlock<'s>) {
-        if let (Some(constant), Some(retain)) = (block.constant, block.retain.or(block.persistent).or(block.non_retain))
-        {
+        // TwinCAT has `VAR_INPUT CONSTANT PERSISTENT`: the program writes none of it, so a start has nothing to restore.
+        let persistent = block.persistent.filter(|it| !self.dialect(*it).has_persistent_constants());
+        if let (Some(constant), Some(retain)) = (block.constant, block.retain.or(persistent).or(block.non_retain)) {
             let word = self.log.sources.text(retain);
             let message = format!("a variable is CONSTANT or {word}, not both");
             self.report(

@@ -116,6 +116,7 @@ codes! {
     E0317 Error "which FUNCTION of a name is called";
     E0318 Error "a call of what has no body";
     E0319 Error "what cannot be implemented outside";
+    E0320 Error "a call of an ABSTRACT METHOD by SUPER";
     E0402 Error "a declaration needs itself";
     E0403 Error "qualifier does not belong here";
     E0405 Error "VAR_EXTERNAL differs from its global";
@@ -172,6 +173,7 @@ codes! {
     W0517 Warning "a name of the standard's is declared again";
     W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
+    W0526 Warning "a body reads its own EN";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";

@@ -18,7 +18,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Expr> {
         let [target, value] = sides;
-        if !self.decl.dialect(span).assigns_in_a_row() {
+        if !self.decl.dialect(span).assigns_in_expressions() {
             match expected {
                 Some(Type::BOOL) => self.report_assignment(sides, sign),
                 _ => self.report(

@@ -233,7 +233,7 @@ impl<'s> Checker<'_, 's> {
     /// rounded to a whole number would go by chance.
     fn has_untyped_scale(&mut self, slot: usize, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> bool {
         let name = self.decl.pous[slot].ast.name;
-        if name.text != "SCALE_X" || self.decl.log.sources.get(name.span.file).path != "library/scale_x.st" {
+        if name.text != "SCALE_X" || !self.decl.log.sources.get(name.span.file).is_unit("library/scale_x.st") {
             return false;
         }
         let number = |(at, it): (usize, &ast::Argument<'s>)| match &it.kind {

@@ -89,7 +89,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether an enumeration's value is a number where one is stored.
-    fn gives_number(&self, id: EnumId, span: Span) -> bool {
+    pub(crate) fn gives_number(&self, id: EnumId, span: Span) -> bool {
         self.decl.dialect(span).mixes_bits_and_integers() || self.decl.table.named_values.contains(&id)
     }
 

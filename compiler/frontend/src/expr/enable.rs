@@ -8,7 +8,7 @@ use super::late_target::{Finding, LateTarget};
 use super::order::Held;
 use super::place::Found;
 use crate::types::signature::{Formal, Signature, Target};
-use crate::{Span, ast};
+use crate::{Code, Diagnostic, Span, ast};
 use ast::ArgumentKind;
 use staunch_ir::{
     Block, Chars, Const, Expr, ExprKind, Location, ParamId, Place, Root, Section, Statement, StatementKind, Type, Value,
@@ -236,9 +236,17 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// An EN and an ENO that a POU declares as the standard does: the body runs while EN is TRUE, and
-    /// ENO says so unless the body says otherwise.
-    pub(crate) fn own_enable(&mut self, signature: &Signature<'s>, span: Span) {
-        if self.decl.dialect(span).declares_plain_enable() {
+    /// ENO says so unless the body says otherwise. An EN alone is an ordinary input of a PROGRAM.
+    pub(crate) fn own_enable(
+        &mut self,
+        signature: &Signature<'s>,
+        (kind, span): (ast::PouKind, Span),
+        statements: &[ast::Statement<'s>],
+    ) {
+        let dialect = self.decl.dialect(span);
+        let has_eno = own(signature, "ENO").is_some_and(|it| it.section == Section::Output);
+        let is_plain = !has_eno && (kind == ast::PouKind::Program || !dialect.runs_while_enabled());
+        if is_plain || dialect.declares_plain_enable() {
             return;
         }
         let at = self.at(span);
@@ -248,10 +256,29 @@ impl<'s> Checker<'_, 's> {
             let Some(place) = self.scope.get(en.name.text).map(|it| it.place.clone()) else { return };
             let mut then: Vec<_> = told(false).into_iter().collect();
             then.push(Statement::new(StatementKind::Return, at));
+            self.report_read_enable(statements);
             let Some(condition) = self.not(Expr::load(place, at), span) else { return };
             self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
         }
         self.block.extend(told(true));
+    }
+
+    /// Reports a body that reads its own EN, which is TRUE wherever the body runs.
+    fn report_read_enable(&mut self, statements: &[ast::Statement<'s>]) {
+        let mut first = None;
+        ast::each_expr(statements, &mut |it| match &it.kind {
+            ast::ExprKind::Name(name) if name.text.eq_ignore_ascii_case("EN") => {
+                first.get_or_insert(*name);
+            }
+            _ => {}
+        });
+        let Some(name) = first else { return };
+        let message = format!("`{}` is always TRUE here: the body runs only while it is", name.text);
+        self.report(
+            Diagnostic::new(Code::W0526, name.span, message)
+                .label("a call with FALSE leaves the whole body out")
+                .help("give the input another name if the body is to run in each call"),
+        );
     }
 }
 

@@ -99,7 +99,22 @@ impl<'s> Checker<'_, 's> {
             };
             self.report(error);
         }
-        found.map(|it| it.0)
+        let (routine, _) = found?;
+        if self.decl.pous[routine].ast.modifiers.is_abstract.is_some() {
+            self.report_abstract_super(routine, name.map_or(span, |it| it.span));
+            return None;
+        }
+        Some(routine)
+    }
+
+    fn report_abstract_super(&mut self, routine: usize, span: Span) {
+        let declared = self.decl.pous[routine].ast.name;
+        self.report(
+            Diagnostic::new(Code::E0320, span, format!("`{}` is ABSTRACT, so SUPER has none to call", declared.text))
+                .label("this METHOD has no body")
+                .other(declared.span, "declared here without a body")
+                .help("delete the call, or declare the METHOD without ABSTRACT and write its body"),
+        );
     }
 
     /// The PROPERTY that an expression means, with the instance that is written before its name.

@@ -315,8 +315,10 @@ impl<'s> Checker<'_, 's> {
     fn power(&mut self, sides: Sides) -> Option<Expr> {
         const REAL: Type = Type::Elementary(Elementary::Real);
         let op_span = sides.op_span;
+        let mixes = self.decl.dialect(sides.span).mixes_bits_and_integers();
+        let is_number = |it: Elementary| it.is_real() || it.is_integer() || mixes && it.is_bits() && it != Elementary::Bool;
         let numeric = |operand: &Operand| match operand.ty() {
-            Some(Type::Elementary(it)) => it.is_real() || it.is_integer(),
+            Some(Type::Elementary(it)) => is_number(it),
             Some(_) => false,
             None => true,
         };
@@ -324,7 +326,7 @@ impl<'s> Checker<'_, 's> {
             self.report_operands(&sides, "both sides need to be numbers");
             return None;
         }
-        let is_long = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && it.is_integer());
+        let is_long = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && !it.is_real() && is_number(it));
         let long = is_long(&sides.a) || is_long(&sides.b);
         let keeps_base = self.decl.dialect(sides.span).powers_have_type_of_base();
         let is_real = match sides.a.ty() {

@@ -32,7 +32,7 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn find_part(&mut self, ty: Type, part: ast::Name<'s>) -> Option<Part> {
         let width = match ty {
             Type::Elementary(it) if it.repr().is_integer() && it.is_integral() => it.repr().size() * 8,
-            Type::Enum(id) if self.counts_as_number(id, part.span) => {
+            Type::Enum(id) if self.gives_number(id, part.span) => {
                 self.decl.program.enumeration(id).base.repr().size() * 8
             }
             other => {
@@ -70,7 +70,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn bit_by_name(&mut self, ty: Type, name: ast::Name<'s>) -> Option<Option<Part>> {
         let whole = match ty.read() {
             Type::Elementary(it) => it,
-            Type::Enum(id) if self.counts_as_number(id, name.span) => self.decl.program.enumeration(id).base,
+            Type::Enum(id) if self.gives_number(id, name.span) => self.decl.program.enumeration(id).base,
             _ => return None,
         };
         let counted = whole.is_integral() && self.decl.dialect(name.span).selects_by_constants();

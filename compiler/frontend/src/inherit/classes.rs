@@ -113,7 +113,7 @@ impl<'s> Classes<'s> {
     }
 
     fn site(&self, span: Span) -> Site {
-        Site { span, dialect: self.dialect(span) }
+        Site { span, dialect: self.dialect(span), is_bundled: false }
     }
 
     fn lookup(&self, path: &[Name<'s>]) -> Found {

@@ -74,6 +74,8 @@ pub(crate) enum Found {
 pub(crate) struct Site {
     pub span: Span,
     pub dialect: Dialect,
+    /// In a unit of the library that the compiler brings along: a standard name means the standard's.
+    pub is_bundled: bool,
 }
 
 /// What one name means in one namespace: a global variable may have the name of a type.
@@ -187,6 +189,12 @@ impl<'s> Names<'s> {
         let own = |space: SpaceId| self.spaces[space.0].own.get(&key).and_then(|it| it.of(sense));
         while let Some(region) = regions.next() {
             let mut spaces = self.spaces_to(region.space, regions.peek().map(|it| it.space));
+            let of_standard = || self.library(site.dialect, name, sense);
+            if site.is_bundled && region.space == SpaceId::ROOT
+                && let Some(meaning) = of_standard()
+            {
+                return Found::One(meaning);
+            }
             if let Some(entry) = spaces.next().and_then(own) {
                 return Found::One(Meaning::Declared(entry));
             }
@@ -288,9 +296,11 @@ impl<'s> Names<'s> {
     /// What a library has. What is bundled in Structured Text is declared as what users write is.
     fn of_library(&self, dialect: Dialect, of: &str, name: &str, sense: Sense) -> Option<Meaning> {
         if prelude::unit(name, dialect).is_some_and(|it| library::is_one_of(it.libraries, of)) {
-            let own = self.spaces[SpaceId::ROOT.0].own.get(&Key(name)).and_then(|it| it.of(sense));
-            let listed = || self.in_lists(SpaceId::ROOT, name).first().copied().filter(|_| sense == Sense::Value);
-            return own.or_else(listed).map(Meaning::Declared);
+            // A unit whose name the program has itself has another one.
+            let own = |name: &str| self.spaces[SpaceId::ROOT.0].own.get(&Key(name)).and_then(|it| it.of(sense));
+            let listed = |name: &str| self.in_lists(SpaceId::ROOT, name).first().copied();
+            let found = |name: &str| own(name).or_else(|| listed(name).filter(|_| sense == Sense::Value));
+            return found(&prelude::renamed(name)).or_else(|| found(name)).map(Meaning::Declared);
         }
         self.library(dialect, name, sense).filter(|_| library::is_one_of(library::of_built_in(name), of))
     }

@@ -28,7 +28,7 @@ macro_rules! real_arrays {
         concat!($(
             "METHOD __DIFFER_", $ty, " : BOOL\n",
             "VAR_INPUT expected, actual, delta : ", $ty, "; END_VAR\n",
-            "__DIFFER_", $ty, " := ABS(expected - actual) > delta;\n",
+            "__DIFFER_", $ty, " := NOT (expected = actual OR ABS(expected - actual) <= delta);\n",
             "IF __DIFFER_", $ty, " THEN __expected := ", $ty, "_TO_STRING(expected); __actual := ", $ty, "_TO_STRING(actual); END_IF;\n",
             "END_METHOD\n",
             "METHOD __ARRAYS_", $ty, " : BOOL\n",

@@ -132,6 +132,8 @@ pub struct State<'t, 's> {
     pub nested: Vec<Item<'s>>,
     /// Of VAR_CONFIG outside of a CONFIGURATION.
     pub bindings: Vec<Binding<'s>>,
+    /// What is reported of `a += b`, if the dialect does not have it.
+    pub combined: Vec<Diagnostic>,
     pub regions: Vec<Region<'s>>,
     /// Of these, the ones around the current place.
     pub around: Vec<usize>,
@@ -164,6 +166,7 @@ impl<'t, 's> State<'t, 's> {
             orphaned: false,
             nested: Vec::new(),
             bindings: Vec::new(),
+            combined: Vec::new(),
             regions: vec![whole],
             around: vec![0],
             ended: false,

@@ -2,7 +2,7 @@
 //! and reading goes on at the next one.
 
 use crate::{
-    ast::{Arm, Expr, ExprKind, Finally, Label, MAX_CHAIN, Name, Statement, StatementKind, Try},
+    ast::{Arm, BinaryOp, Expr, ExprKind, Finally, Label, MAX_CHAIN, Name, Statement, StatementKind, Try, each_part},
     lex::Kind,
     source::Span,
 };
@@ -210,9 +210,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
         }
         Kind::Colon => return split_assign(input, target),
         Kind::PlusEqual | Kind::MinusEqual | Kind::StarEqual | Kind::SlashEqual => {
-            diagnostics::compound_assignment(input, &target);
-            input.take();
-            assignment(input, target)?
+            combined(input, target)?
         }
         Kind::Attempt => {
             input.take();
@@ -227,6 +225,30 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     };
     end(input)?;
     Ok(kind)
+}
+
+/// `a += b` is `a := a + (b)`: `a` is found twice, so that no index of it may call anything.
+fn combined<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    let op = match input.kind() {
+        Kind::PlusEqual => BinaryOp::Add,
+        Kind::MinusEqual => BinaryOp::Sub,
+        Kind::StarEqual => BinaryOp::Mul,
+        _ => BinaryOp::Div,
+    };
+    let problem = diagnostics::compound_assignment(input, &target);
+    let sign = input.take();
+    let mut calls = false;
+    each_part(&target, &mut |it| calls |= matches!(it.kind, ExprKind::Call(..)));
+    if calls {
+        input.report(problem);
+        return assignment(input, target);
+    }
+    input.state().combined.push(problem);
+    let value = expression(input)?;
+    let right = Expr { span: value.span, kind: ExprKind::Paren(Box::new(value)) };
+    let span = target.span.to(right.span);
+    let value = Expr { kind: ExprKind::Binary(Box::new([target.clone(), right]), op, sign), span };
+    Ok(StatementKind::Assign { target, value })
 }
 
 fn assignment<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {

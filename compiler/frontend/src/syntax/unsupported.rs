@@ -158,6 +158,10 @@ fn has_operands_that_are_no_values(input: &mut In<'_, '_, '_>) -> bool {
         let is_end = |it: Kind| matches!(it, Kind::Comma | Kind::CloseParen);
         let starts_operand = depth == 1 && matches!(kind, Kind::OpenParen | Kind::Comma);
         let (next, after) = (input.kind_ahead(at + 1), input.kind_ahead(at + 2));
+        // `Mag();` is a call of an instance: all of these instructions that are written so have operands.
+        if at == 1 && next == Kind::CloseParen {
+            return false;
+        }
         if starts_operand && (is_end(next) || next.keyword().is_some() && is_end(after)) {
             return true;
         }

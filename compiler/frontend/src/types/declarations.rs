@@ -518,7 +518,7 @@ impl<'s> Declarations<'s> {
     }
 
     pub fn site(&self, span: Span) -> Site {
-        Site { span, dialect: self.dialect(span) }
+        Site { span, dialect: self.dialect(span), is_bundled: self.log.sources.get(span.file).is_bundled() }
     }
 
     /// What files declare by a name where a value is expected.

@@ -61,16 +61,14 @@ pub fn foreign_not(sign: Span) -> Diagnostic {
 }
 
 /// `x += 1`
-pub fn compound_assignment(input: &mut In<'_, '_, '_>, target: &Expr<'_>) {
+pub fn compound_assignment(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> Diagnostic {
     let sign = input.here();
     let (text, target) = (input.text(sign), input.text(target.span));
     let op = &text[..1];
-    input.report(
-        Diagnostic::new(Code::E0010, sign, format!("Structured Text has no `{text}`"))
-            .label("expected `:=`")
-            .help(format!("write `{target} := {target} {op} …`"))
-            .fix(sign, format!(":= {target} {op}")),
-    );
+    Diagnostic::new(Code::E0010, sign, format!("Structured Text has no `{text}`"))
+        .label("expected `:=`")
+        .help(format!("write `{target} := {target} {op} …`"))
+        .fix(sign, format!(":= {target} {op}"))
 }
 
 /// `x++;`
