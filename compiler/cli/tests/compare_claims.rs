@@ -285,3 +285,99 @@ END_PROGRAM
     let advice = text.lines().find(|it| it.starts_with("What to do: ")).unwrap_or_default();
     assert!(advice.contains("CTUD(c)") && !advice.contains("CTU(c"), "{text}");
 }
+
+/// CODESYS holds a TIME in 32 bits without a sign (its help, "TIME, LTIME"), so that `T#1s - T#2s` is no negative time.
+/// That is not followed: nothing is called equal that computes with one; a timer does not.
+#[test]
+fn a_rule_that_is_not_followed_is_never_equal() {
+    let source = "PROGRAM p
+VAR_INPUT on : BOOL; END_VAR
+VAR a : TIME := T#1s; b : TIME := T#2s; d : TIME; neg : BOOL; END_VAR
+d := a - b;
+neg := on AND d < T#0s;
+END_PROGRAM
+";
+    let no_run = written("unfollowed.txt", "no run\n");
+    for (from, to) in [("iec", "codesys"), ("codesys", "openplc")] {
+        let arguments = ["--from", from, "--to", to, "--assume", no_run.as_str()];
+        let (code, text) = compare("time", source, &arguments);
+        assert_eq!(code, Some(4), "{text}");
+        assert!(text.contains("TIME of CODESYS, which is not followed here and is used in line 4"), "{text}");
+        let timer = "PROGRAM p
+VAR_INPUT on : BOOL; END_VAR
+VAR t : TON; END_VAR
+t(IN := on, PT := T#30ms);
+END_PROGRAM
+";
+        let (code, text) = compare("timer", timer, &arguments);
+        assert_eq!(code, Some(0), "{text}");
+    }
+}
+
+/// Where the first difference needs STOP -> RUN, which most programs from CODESYS have, the next one is shown as well.
+#[test]
+fn the_search_goes_on_past_stop_to_run() {
+    let source = |preset: u32| {
+        format!(
+            "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT over : BOOL; END_VAR
+VAR c : CTU; e : R_TRIG; END_VAR
+e(CLK := s); c(e.Q, c.CV > 3, {preset});
+over := c.CV > 2;
+END_PROGRAM
+"
+        )
+    };
+    let arguments = ["--from", "codesys", "--to", "openplc", "--vars", "c.CV"];
+    let (code, text) = compare("past_run", &source(2), &arguments);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Trap 11"), "{text}");
+    let next = text.lines().find(|it| it.starts_with("Where nobody switches it to STOP (`no run`")).unwrap_or_default();
+    assert!(next.contains("the two differ after 5 scans") && next.contains("Trap 15 (`c`)"), "{text}");
+    let (_, text) = compare("past_run_equal", &source(9), &arguments);
+    assert!(text.contains("the two are equal: every reachable state was seen."), "{text}");
+    // What is of other systems than these is not listed.
+    assert!(!text.contains("of the two systems"), "{text}");
+}
+
+/// A number that is computed with is sampled: another value may make a difference sooner.
+#[test]
+fn nothing_is_called_shortest_of_sampled_numbers() {
+    let source = "PROGRAM p
+VAR_INPUT x : BOOL; n : INT; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTU; f : INT; END_VAR
+f := (f * 3 + n) / 4;
+c(CU := x AND (f > 600 AND f < 610), R := FALSE, PV := 1);
+o := c.CV > 1;
+END_PROGRAM
+";
+    let (code, text) = compare("sampled", source, &["--from", "iec", "--to", "cscape", "--vars", "o"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(!text.contains("no shorter"), "{text}");
+}
+
+/// A counter that is inherited is rewritten for Logix where an heir calls it.
+#[test]
+fn an_inherited_counter_is_written_for_logix() {
+    let source = "FUNCTION_BLOCK A
+VAR c : CTU; END_VAR
+VAR_INPUT x : BOOL; END_VAR
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK B EXTENDS A
+VAR_OUTPUT n : INT; END_VAR
+c(CU := x, PV := 3);
+n := WORD_TO_INT(c.CV);
+END_FUNCTION_BLOCK
+PROGRAM P
+VAR_INPUT i : BOOL; END_VAR
+VAR b : B; END_VAR
+VAR_OUTPUT q : INT; END_VAR
+b(x := i); q := b.n;
+END_PROGRAM
+";
+    let (code, text) = compare("inherited", source, &["--from", "codesys", "--to", "logix"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("+ c.PRE := 3; CTU(c, x);") && text.contains("codesys and logix differ after"), "{text}");
+}

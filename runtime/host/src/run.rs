@@ -120,7 +120,9 @@ impl Summary {
             elapsed.as_nanos()
         );
         if let Some(RealTime { overruns, shortest, longest, .. }) = real {
-            let (shortest, longest) = (shortest.as_nanos(), longest.as_nanos());
+            // Where nothing ran there is no shortest scan.
+            let shortest = if *shortest == Duration::MAX { 0 } else { shortest.as_nanos() };
+            let longest = longest.as_nanos();
             text += &format!(",\"overruns\":{overruns},\"shortest_ns\":{shortest},\"longest_ns\":{longest}");
         }
         text + "}"

@@ -38,7 +38,7 @@ use search::world::World;
 use staunch_frontend::Dialect;
 use staunch_ir::Program;
 use variants::{Other, Variant};
-use verdict::{Judged, Verdict, judge};
+use verdict::{Judged, Verdict, WithoutRun, judge};
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
@@ -95,6 +95,8 @@ struct Compared {
     verdict: Verdict,
     /// Beyond what is accepted.
     rest: Option<Verdict>,
+    /// Where nobody switches it to STOP, if the difference needs that.
+    without_run: Option<WithoutRun>,
 }
 
 impl Compared {
@@ -126,11 +128,12 @@ fn each_variant(
         };
         others.push(Other::of(variant, &next.verdict, next.rest.as_ref()));
     }
-    let Compared { pair, world, findings, accepted, verdict, rest } = &mut shown;
+    let Compared { pair, world, findings, accepted, verdict, rest, without_run } = &mut shown;
     if let (Some(path), Verdict::Differs { rows, trace, .. }) = (report.args.picture(), &*verdict) {
         picture::draw(pair, world, report.args, path, (rows, trace.as_ref()))?;
     }
-    let judged = Judged { verdict, rest: rest.as_ref(), variant: &of, others: &others };
+    let judged =
+        Judged { verdict, rest: rest.as_ref(), variant: &of, others: &others, without_run: without_run.as_ref() };
     report.print(pair, world, &judged, findings, accepted)
 }
 
@@ -153,7 +156,10 @@ fn side_by_side(
     let uses = pitfall::uses(&pair);
     let mut findings = Findings::new(&pair, &world, &uses, renamed);
     let accepted = args.accept.as_deref().map(Accepted::read).transpose()?.unwrap_or_default();
-    let verdict = if same_program && args.stimulus.is_none() {
+    let verdict = if same_program && args.stimulus.is_none() && !world.unfollowed.is_empty() {
+        let tried = vec!["both systems run the same program, by the rules that are followed here".to_owned()];
+        Verdict::NotFound { tried, left: world.unfollowed.clone() }
+    } else if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
         Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
     } else {
@@ -172,7 +178,8 @@ fn side_by_side(
         Some(it @ Verdict::Differs { .. }) => (it, None),
         rest => (verdict, rest),
     };
-    Ok(Compared { pair, world, findings, accepted, verdict, rest })
+    let without_run = judge::without_run(&mut pair, &world, args, &verdict);
+    Ok(Compared { pair, world, findings, accepted, verdict, rest, without_run })
 }
 
 /// What is to be compared is there on both sides: what is not would be passed over in silence.

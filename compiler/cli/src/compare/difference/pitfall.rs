@@ -12,5 +12,5 @@ mod advice;
 
 pub use cause::{Cause, cause, seen};
 pub use classify::Habits;
-pub use impossible::{Use, impossible, uses};
+pub use impossible::{OF_OTHERS, Use, impossible, uses};
 pub use list::Pitfall;

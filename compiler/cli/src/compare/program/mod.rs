@@ -9,3 +9,5 @@ pub mod facts;
 pub mod usage;
 
 pub mod apart;
+
+pub mod unfollowed;

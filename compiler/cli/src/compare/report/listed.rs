@@ -3,6 +3,7 @@
 use super::Report;
 use crate::compare::difference::accept::Accepted;
 use crate::compare::difference::kind::Kind;
+use crate::compare::difference::pitfall::OF_OTHERS;
 use crate::compare::findings::finding::{self, Finding, Findings};
 use crate::compare::search::trace::Trace;
 use staunch_ir::Location;
@@ -28,7 +29,7 @@ impl Report<'_> {
         for (subject, kind, at) in subjects {
             let is_own = |it: &&Finding| (it.subject.as_str(), it.kind, it.at) == (subject, kind, at);
             let own: Vec<&Finding> = findings.all.iter().filter(is_own).collect();
-            let lines = (kind, of_subject(&own, accepted));
+            let lines = (kind, of_subject(&own, accepted, self.session.common.verbose > 0));
             let place = at.map_or_else(String::new, |it| format!(" ({}, {})", kind.name(), self.place(it)));
             let heading = format!("`{subject}`{place}");
             match known.iter_mut().find(|it| it.0 == lines) {
@@ -74,7 +75,7 @@ fn outputs(findings: &Findings, accepted: &Accepted) -> String {
 }
 
 /// What is known of one counter.
-fn of_subject(own: &[&Finding], accepted: &Accepted) -> String {
+fn of_subject(own: &[&Finding], accepted: &Accepted, verbose: bool) -> String {
     let mut text = String::new();
     for finding in own {
         if let finding::Verdict::Reachable(trace) = &finding.verdict {
@@ -89,7 +90,7 @@ fn of_subject(own: &[&Finding], accepted: &Accepted) -> String {
     } else if !undecided.is_empty() {
         text.push_str("  undecided: it was not seen to differ\n");
     }
-    text + &impossible(own)
+    text + &impossible(own, verbose)
 }
 
 fn reached(finding: &Finding, trace: Option<&Trace>) -> String {
@@ -108,11 +109,14 @@ fn note(finding: &Finding, accepted: &Accepted) -> &'static str {
     if finding.is_accepted(accepted) { " (accepted)" } else { "" }
 }
 
-/// The pitfalls that cannot happen, by the reasons why.
-fn impossible(own: &[&Finding]) -> String {
+/// The pitfalls that cannot happen, by the reasons why; those of other systems only where all is asked for.
+fn impossible(own: &[&Finding], verbose: bool) -> String {
     let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
     for finding in own {
         let finding::Verdict::Impossible(why) = &finding.verdict else { continue };
+        if why.ends_with(OF_OTHERS) && !verbose {
+            continue;
+        }
         let pitfall = finding.pitfall.map(|it| it.number().to_string());
         match reasons.iter_mut().find(|it| it.0 == why) {
             Some((_, pitfalls)) => pitfalls.extend(pitfall),

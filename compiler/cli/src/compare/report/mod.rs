@@ -148,6 +148,13 @@ impl Report<'_> {
                 let _ = writeln!(text, "Tried: {}.\nNot tried: {}.", tried.join(", "), left.join("; "));
             }
         }
+        if let Some(it) = judged.without_run {
+            let _ = writeln!(
+                text,
+                "Where nobody switches it to STOP (`no run` in the file that --assume names), {}.",
+                it.words
+            );
+        }
         text += &judged.variants();
         if self.args.stimulus.is_none() {
             text += &self.listed(findings, accepted);

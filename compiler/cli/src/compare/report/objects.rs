@@ -80,6 +80,12 @@ impl Report<'_> {
             Verdict::NotFound { .. } => "\"not found\"",
         });
         let _ = write!(text, ",\"beyond_accepted\":{beyond}");
+        if let Some(it) = judged.without_run {
+            let scans = it.scans.map_or("null".to_owned(), |it| it.to_string());
+            let trap = number(it.pitfall);
+            let _ =
+                write!(text, ",\"without_run\":{{\"verdict\":\"{}\",\"scans\":{scans},\"trap\":{trap}}}", it.verdict);
+        }
         if !judged.others.is_empty() {
             let other =
                 |it: &Other| format!("{{\"settings\":{},\"verdict\":{}}}", it.variant.object(), quoted(it.verdict));

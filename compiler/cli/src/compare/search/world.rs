@@ -8,6 +8,7 @@ use crate::compare::inputs::alphabet::{self, Alphabet};
 use crate::compare::inputs::assume::{Assumptions, Mentioned};
 use crate::compare::pair::Pair;
 use crate::compare::program::facts::Facts;
+use crate::compare::program::unfollowed;
 use staunch_ir::Value;
 use std::collections::BTreeSet;
 
@@ -29,6 +30,8 @@ pub struct World {
     pub habits: Vec<Habits>,
     /// Variables that the two systems compute in other types.
     pub computed: Vec<Candidate>,
+    /// Rules of the two systems that the programs use and that are not followed.
+    pub unfollowed: Vec<String>,
     /// What is accepted, where the search goes on past it.
     pub tolerance: Option<Tolerance>,
 }
@@ -68,6 +71,7 @@ impl World {
             inputs_written: alphabet::are_written(pair, facts),
             habits,
             computed,
+            unfollowed: pair.sides.iter().flat_map(|it| unfollowed::find(&it.program, it.dialect)).collect(),
             tolerance: None,
         })
     }

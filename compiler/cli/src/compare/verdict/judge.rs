@@ -1,6 +1,6 @@
 //! The search, and what follows from what it has found.
 
-use super::{Verdict, scope, stimulus};
+use super::{Verdict, WithoutRun, scope, stimulus};
 use crate::args::Compare;
 use crate::compare::difference::pitfall;
 use crate::compare::findings::finding::Findings;
@@ -11,6 +11,7 @@ use crate::compare::program::scalar::{Role, Scalar};
 use crate::compare::search::trace::Trace;
 use crate::compare::search::world::World;
 use crate::compare::search::{look, strategy};
+use staunch_host::Event;
 
 /// What the search, or a stimulus, shows.
 pub fn judge(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Result<Verdict, String> {
@@ -21,7 +22,8 @@ pub fn judge(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Find
     let exact = covers_all(pair, world, args);
     findings.note(pair, world, &outcome, exact);
     if let Some(trace) = outcome.found.clone() {
-        let is_tried = outcome.more_values == 0 && world.alphabet.complete;
+        // Of numbers that were sampled, others may make a difference sooner.
+        let is_tried = outcome.more_values == 0 && world.alphabet.is_exact();
         let shortest = is_tried && outcome.depth + 1 >= trace.scans();
         return Ok(differs(pair, world, &trace, shortest, findings));
     }
@@ -58,12 +60,58 @@ pub fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings:
     scope::not_found(pair, world, &outcome)
 }
 
+/// The share of the budget that goes into the search past STOP -> RUN.
+const WITHOUT_RUN: u64 = 4;
+
+/// Where the difference needs STOP -> RUN: what differs without it.
+pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Verdict) -> Option<WithoutRun> {
+    let Verdict::Differs { trace: Some(trace), .. } = verdict else { return None };
+    if !trace.steps().any(|it| it.event == Some(Event::Run)) {
+        return None;
+    }
+    pair.never.push(Event::Run);
+    let outcome = strategy::search(pair, world, args.budget / WITHOUT_RUN, 0);
+    let found = match &outcome.found {
+        Some(trace) => {
+            let steps: Vec<Step> = trace.steps().cloned().collect();
+            let rows = pair.replay(&steps);
+            let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
+            let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
+            let names: Vec<&str> = differences.iter().take(3).map(|it| pair.path(*it)).collect();
+            let scans = if rows.len() == 1 { "1 scan".to_owned() } else { format!("{} scans", rows.len()) };
+            let form = cause.form(pair);
+            let of = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
+            let trap = cause.pitfall.map_or_else(String::new, |it| {
+                let advice = it.advice(args.from.dialect, args.to.dialect, form);
+                format!(". Trap {}{of}: {} What to do: {}", it.number(), it.sentence(), advice.trim_end_matches('.'))
+            });
+            let words = format!("the two differ after {scans}, in {}{trap}", names.join(", "));
+            WithoutRun { verdict: "different", words, scans: Some(rows.len()), pitfall: cause.pitfall }
+        }
+        None if outcome.complete && covers_all(pair, world, args) => WithoutRun {
+            verdict: "equal",
+            words: "the two are equal: every reachable state was seen".to_owned(),
+            scans: None,
+            pitfall: None,
+        },
+        None => WithoutRun {
+            verdict: "not found",
+            words: "no difference was found, and none is ruled out".to_owned(),
+            scans: None,
+            pitfall: None,
+        },
+    };
+    pair.never.pop();
+    Some(found)
+}
+
 /// Whether the search leaves nothing out that the inputs could do, and no output that one of the two alone has: where
 /// addresses share bits on one system, what is written by another name is an output of its own on the other.
 fn covers_all(pair: &Pair, world: &World, args: &Compare) -> bool {
     let is_output = |it: &Scalar| it.at.is_output && it.field.is_some();
     let has_all = args.vars.is_some() || pair.only_one_has(is_output).is_empty();
     has_all
+        && world.unfollowed.is_empty()
         && world.alphabet.is_exact()
         && pair.whole
         && alphabet::untried(pair).is_empty()

@@ -5,6 +5,7 @@ pub mod stimulus;
 
 pub mod judge;
 
+use crate::compare::difference::pitfall::Pitfall;
 use crate::compare::pair::Row;
 use crate::compare::search::trace::Trace;
 use crate::compare::variants::{Other, Variant};
@@ -27,4 +28,15 @@ pub struct Judged<'v> {
     pub variant: &'v Variant,
     /// What the other answers came to.
     pub others: &'v [Other],
+    pub without_run: Option<&'v WithoutRun>,
+}
+
+/// What the comparison comes to where nobody switches the system to STOP.
+#[derive(Debug)]
+pub struct WithoutRun {
+    pub verdict: &'static str,
+    /// As the end of a sentence.
+    pub words: String,
+    pub scans: Option<usize>,
+    pub pitfall: Option<Pitfall>,
 }

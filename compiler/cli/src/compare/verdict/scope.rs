@@ -128,6 +128,7 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     if !pair.whole {
         left.push("elements of long arrays".to_owned());
     }
+    left.extend(world.unfollowed.iter().cloned());
     left.extend(kept(pair).into_iter().chain(of_one(pair)));
     let beside = world.tolerance.iter().flat_map(|it| it.beside.iter().cloned());
     left.extend(listed(beside).map(|it| format!("what {it} decides, which is declared with what is accepted")));

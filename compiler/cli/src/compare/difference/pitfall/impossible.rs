@@ -58,6 +58,9 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
     (0..pair.counters.len()).map(each).collect()
 }
 
+/// How the reason ends where a pitfall is of another system.
+pub const OF_OTHERS: &str = "of the two systems";
+
 /// Why a pitfall cannot happen to a counter, by the two systems' rules and the program's text alone.
 pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Option<&'static str> {
     let kinds = instances.map(kind);

@@ -62,6 +62,17 @@ impl<'f> Shapes<'f> {
         }
     }
 
+    /// The variables of what a block or program EXTENDS, the outermost class first.
+    pub fn inherited(&self, pou: &'f Pou<'f>) -> Vec<&'f VarDecl<'f>> {
+        let mut bases = Vec::new();
+        let mut base = pou.extends.and_then(|it| self.blocks.get(&key(it)).copied());
+        while let Some(it) = base.filter(|_| bases.len() < MOST_NAMES) {
+            bases.push(it);
+            base = it.extends.and_then(|it| self.blocks.get(&key(it)).copied());
+        }
+        bases.into_iter().rev().flat_map(|it| vars(&it.blocks)).collect()
+    }
+
     pub fn of_type(&self, ty: &'f TypeSpec<'f>) -> Option<Shape<'f>> {
         let mut ty = ty;
         for _ in 0..MOST_NAMES {
@@ -107,7 +118,9 @@ impl<'f> Shapes<'f> {
         let declares = |it: &&'f VarDecl<'f>| it.names.iter().any(|it| key(*it) == key(name));
         let decl = match shape {
             Shape::Type(TypeSpec { kind: TypeKind::Struct(members), .. }) => members.iter().find(declares),
-            Shape::Instance(pou) => vars(&pou.blocks).find(declares),
+            Shape::Instance(pou) => {
+                vars(&pou.blocks).find(declares).or_else(|| self.inherited(pou).into_iter().find(|it| declares(it)))
+            }
             Shape::Type(_) | Shape::Counter(_) => None,
         };
         self.of_type(&decl?.ty)

@@ -57,6 +57,7 @@ impl<'t, 'f> Writer<'t, 'f> {
 
     fn pou(&mut self, pou: &'f Pou<'f>) {
         let outer = self.shapes.variables();
+        self.shapes.inherited(pou).into_iter().for_each(|it| self.shapes.declare(it));
         for block in &pou.blocks {
             block.vars.iter().for_each(|it| self.shapes.declare(it));
             self.block(block);
