@@ -446,6 +446,10 @@ pub(crate) fn clock() -> Option<BlockId> {
     block_in(Family::Iec, "__CLOCK")
 }
 
+pub(crate) fn minor_fault() -> Option<BlockId> {
+    block_in(Family::Iec, "__MINOR_FAULT")
+}
+
 pub(crate) fn shared_block(name: &str) -> Option<BlockId> {
     block_named(name, BlockInfo::is_shared)
 }

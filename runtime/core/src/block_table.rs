@@ -57,6 +57,9 @@ macro_rules! for_each_block {
             // What reads the time for TIME(); no program names it.
             Iec "__CLOCK" iec::Clock {} { timed "" call staunch_iec_clock; }
 
+            // What notes a division by zero after which the program continues; no program names it.
+            Iec "__MINOR_FAULT" iec::MinorFault {} { timed "" call staunch_iec_minor_fault; }
+
             // What tells the start of a cycle of a task of TwinCAT's; no program names it.
             Iec "__SCAN" iec::ScanInfo {} [TIME => LTIME] { timed "" call staunch_iec_scan; }
 

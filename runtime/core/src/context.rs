@@ -1,7 +1,7 @@
 //! What a scan hands to all that runs in it: its time, whether it is the first, the time between two, and the turns that
 //! loops have left.
 
-use crate::{FaultKind, Time};
+use crate::{FaultKind, Location, Time};
 use core::cell::Cell;
 
 /// What a scan is told about the world: the runtime has no clock of its own.
@@ -17,6 +17,24 @@ pub struct Context {
     turns: Cell<u64>,
     /// Nanoseconds from one scan of this program to the next, as its host places them; 0 where the host does not say.
     pub cycle: Time,
+    minor_faults: Cell<MinorFaults>,
+}
+
+/// Divisions by zero after which the program continues, as Logix has them (a minor fault of type 4, code 4).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MinorFaults {
+    pub count: u64,
+    pub first: Option<Location>,
+}
+
+impl MinorFaults {
+    const NONE: Self = Self { count: 0, first: None };
+
+    /// Those before, and those of a later scan.
+    #[must_use]
+    pub fn and(self, later: Self) -> Self {
+        Self { count: self.count.saturating_add(later.count), first: self.first.or(later.first) }
+    }
 }
 
 impl Context {
@@ -29,7 +47,13 @@ impl Context {
 
     /// A scan at `now` nanoseconds.
     pub const fn new(now: Time, first_scan: bool) -> Self {
-        Self { now: Cell::new(now), first_scan, turns: Cell::new(Self::TURNS), cycle: 0 }
+        Self {
+            now: Cell::new(now),
+            first_scan,
+            turns: Cell::new(Self::TURNS),
+            cycle: 0,
+            minor_faults: Cell::new(MinorFaults::NONE),
+        }
     }
 
     /// A scan at `now` nanoseconds that is not the first.
@@ -71,6 +95,16 @@ impl Context {
         let left = self.turns.get();
         self.turns.set(left.wrapping_sub(1));
         if left == 0 { Err(FaultKind::LoopBudget) } else { Ok(()) }
+    }
+
+    /// Notes a fault after which the program continues.
+    pub fn report_minor_fault(&self, at: Location) {
+        self.minor_faults.set(self.minor_faults.get().and(MinorFaults { count: 1, first: Some(at) }));
+    }
+
+    /// What was reported in this scan.
+    pub fn minor_faults(&self) -> MinorFaults {
+        self.minor_faults.get()
     }
 
     #[inline]

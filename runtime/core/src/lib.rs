@@ -42,7 +42,7 @@ pub use block::{
 };
 pub use block_table::BLOCKS;
 pub use blocks::{codesys, cscape, iec, logix, openplc};
-pub use context::Context;
+pub use context::{Context, MinorFaults};
 pub use crc::{Crc32, crc32};
 pub use elementary::{Class, Elementary};
 pub use family::{Family, Keeps};

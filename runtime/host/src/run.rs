@@ -11,7 +11,7 @@ use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
 use crate::trace::{self, Row, Subject, Table, Trace};
 use crate::{Error, Machine, format_time, signal, terminal};
-use staunch_runtime::{Context, Time};
+use staunch_runtime::{Context, MinorFaults, Time};
 use std::io::{self, Write as _};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -183,6 +183,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         out: Output { rows: 0, trace: None, table: Table::new(terminal::width()) },
         clock: None,
         summary: Summary::default(),
+        minor_faults: MinorFaults::default(),
     };
     runner.start()?;
     if let Some(path) = &options.trace {
@@ -190,6 +191,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     }
     let ran = runner.scans(&subject);
     let finished = runner.finish(&subject);
+    runner.tell_minor_faults()?;
     ran.and(finished)?;
     if options.json {
         options.print_json(&runner.summary.json(&subject.title))?;
@@ -253,6 +255,7 @@ struct Runner<'a> {
     out: Output,
     clock: Option<Clock>,
     summary: Summary,
+    minor_faults: MinorFaults,
 }
 
 struct Output {
@@ -344,6 +347,7 @@ impl Runner<'_> {
                 instance: self.map.instances[*instance].name.clone(),
                 path: self.map.file(fault.at.file).to_owned(),
             });
+            self.minor_faults = self.minor_faults.and(cx.minor_faults());
             if ran.is_err() {
                 break;
             }
@@ -360,6 +364,25 @@ impl Runner<'_> {
         }
         self.record(subject, now)?;
         Ok(Some(now))
+    }
+
+    /// Says how often the program has divided by zero and continued, and where first.
+    fn tell_minor_faults(&self) -> Result<(), Error> {
+        let MinorFaults { count, first: Some(at) } = self.minor_faults else { return Ok(()) };
+        let path = self.map.file(at.file);
+        if self.options.json {
+            let (path, line, column) = (quote(path), at.line, at.column);
+            let place = format!("\"file\":{path},\"line\":{line},\"column\":{column}");
+            return self.options.print_json(&format!("{{\"reason\":\"minor-faults\",\"count\":{count},{place}}}"));
+        }
+        let divisions = if count == 1 { "1 division".to_owned() } else { format!("{count} divisions") };
+        if !self.options.quiet {
+            crate::error::tell(format_args!(
+                "note: {divisions} by zero, the first at {path}:{}:{}: a minor fault (type 4, code 4), and the program continues",
+                at.line, at.column
+            ));
+        }
+        Ok(())
     }
 
     /// Says on standard error, or as JSON, what the program has logged.

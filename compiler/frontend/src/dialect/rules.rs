@@ -28,6 +28,11 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// A division of integers by zero gives the dividend, and the program continues.
+    pub const fn divides_by_zero(&self) -> bool {
+        matches!(self.division_by_zero.choice, ByZero::Reported)
+    }
+
     /// A real beyond an integer type becomes the low bits of its number.
     pub const fn keeps_low_bits(&self) -> bool {
         matches!(self.real_to_integer.choice, RealToInteger::LowBits)
@@ -154,12 +159,15 @@ impl ToBool {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ByZero {
     Faults,
+    /// The result is the dividend.
+    Reported,
 }
 
 impl ByZero {
     const fn words(self) -> &'static str {
         match self {
             Self::Faults => "a fault",
+            Self::Reported => "the dividend; of integers, it is reported",
         }
     }
 }
@@ -413,6 +421,8 @@ const LOGIX: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::At32Bits, "1756-RM006, \"Data conversions\""),
     default_string: follows(DefaultString::Holds82, "1756-RM003, \"String types\""),
     real_to_integer: follows(RealToInteger::LowBits, "1756-RM003, \"Convert REAL to an integer\""),
+    division_by_zero: follows(ByZero::Reported, "1756-RM003N, p. 277: a minor fault of type 4, code 4"),
+    modulo_by_zero: follows(ByZero::Reported, "1756-RM003N, p. 281: a minor fault; A - TRN(A / B) * B"),
     sqrt_of_negative: follows(SqrtOfNegative::RootOfMagnitude, "1756-RM003, \"Square Root\""),
     modulo_of_reals: follows(ModuloOfReals::Remainder, "1756-RM003N, p. 279, \"Modulo\""),
     ..IEC

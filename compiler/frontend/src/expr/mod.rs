@@ -27,6 +27,7 @@ mod conversion;
 mod coverage;
 mod dates;
 mod dispatch;
+mod division;
 mod enable;
 mod expression;
 mod fold;

@@ -386,6 +386,7 @@ impl<'s> Checker<'_, 's> {
         let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
         let value = match op == Op::Mod && ty.elementary().is_some_and(Elementary::is_real) {
             true => self.remainder(ty, a, b, op_span)?,
+            false if matches!(op, Op::Div | Op::Mod) => self.divided(op, ty, (a, b), op_span)?,
             false => self.apply(op, ty, vec![a, b], ty, op_span)?,
         };
         Some(computed(value, own))

@@ -1,7 +1,7 @@
 //! The scan's time: what reads it, what lets it pass in a unit test, and what is due by it.
 
 use crate::block::pins;
-use crate::{Context, Time};
+use crate::{Context, Location, Time};
 
 /// Lets the time `in_` pass, in the midst of a scan: what `ADVANCE_TIME` in a TEST calls. A negative time is
 /// none.
@@ -55,6 +55,34 @@ pins!([] Clock {
     Input {}
     Output { now: TIME = "NOW" }
     Memory {}
+});
+
+/// Notes a division by zero after which the program continues, with its place in the source.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct MinorFault {
+    pub file: u16,
+    pub column: u16,
+    pub line: u32,
+}
+
+impl MinorFault {
+    /// One call: sets the place and notes the fault.
+    #[inline]
+    pub fn call(&mut self, file: u16, column: u16, line: u32, cx: &Context) {
+        (self.file, self.column, self.line) = (file, column, line);
+        self.step(cx);
+    }
+
+    /// One call with the place as it is.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        cx.report_minor_fault(Location { file: self.file, column: self.column, line: self.line });
+    }
+}
+
+pins!([] MinorFault {
+    Input { file: UINT = "FILE", column: UINT = "COLUMN", line: UDINT = "LINE" }
 });
 
 /// What a program's scan knows of itself: `first` in the first one after a start, and in `cycle` the time from one to the
