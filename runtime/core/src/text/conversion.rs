@@ -281,9 +281,10 @@ impl Significant {
     /// Takes digits from the start of `text`; the rest of it.
     fn take<'t>(&mut self, text: &'t [u8], is_fraction: bool) -> &'t [u8] {
         let mut rest = text;
-        while let Some((byte, after)) = rest.split_first()
-            && (byte.is_ascii_digit() || *byte == b'_')
-        {
+        while let Some((byte, after)) = rest.split_first() {
+            if !byte.is_ascii_digit() && *byte != b'_' {
+                break;
+            }
             rest = after;
             if *byte == b'_' {
                 continue;
