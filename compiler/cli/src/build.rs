@@ -3,7 +3,7 @@
 use crate::args::{Build, BuildBackend, Emit};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, header, link, output};
+use crate::{REJECTED, apart, header, link, output};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_native::Target;
@@ -16,6 +16,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     }
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let out = args.output.clone().unwrap_or_else(|| default_name(session, args));
+    apart::build(session, &out)?;
     let target = args.target.as_deref().map(full_name);
     let target = target.as_deref();
     match args.emit {

@@ -51,18 +51,22 @@ pub fn entry(key: &str, make: impl FnOnce(&Path) -> Result<(), String>) -> Resul
     };
     private::open(&root).map_err(fail)?;
     let folder = root.join(key);
-    if folder.is_dir() {
+    if is_whole(&folder) {
         touch(&folder);
         return Ok(folder);
     }
     let _turn = turn(&root, key);
-    if folder.is_dir() {
+    if is_whole(&folder) {
         return Ok(folder);
+    }
+    if folder.exists() {
+        // What a power cut or a full disk left.
+        fs::remove_dir_all(&folder).map_err(fail)?;
     }
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
     let aside = root.join(format!(".{key}.{}.{number}", std::process::id()));
     fs::create_dir(&aside).map_err(fail)?;
-    let made = make(&aside);
+    let made = make(&aside).and_then(|()| seal(&aside).map_err(fail));
     let moved = match made {
         Ok(()) => fs::rename(&aside, &folder).or_else(|error| if folder.is_dir() { Ok(()) } else { Err(fail(error)) }),
         Err(error) => Err(error),
@@ -72,6 +76,40 @@ pub fn entry(key: &str, make: impl FnOnce(&Path) -> Result<(), String>) -> Resul
     }
     prune(&root, key);
     moved.map(|()| folder)
+}
+
+/// The list of an entry's files with their lengths, which is written last.
+const SEAL: &str = ".files";
+
+/// Makes sure that the entry is on disk before it has its name.
+fn seal(folder: &Path) -> io::Result<()> {
+    let list = listed(folder)?;
+    for path in fs::read_dir(folder)?.flatten().map(|it| it.path()).filter(|it| it.is_file()) {
+        fs::File::open(path)?.sync_all()?;
+    }
+    let seal = folder.join(SEAL);
+    fs::write(&seal, list)?;
+    fs::File::open(seal)?.sync_all()
+}
+
+/// Whether the entry is as it was made: a power cut may leave files of a folder empty.
+fn is_whole(folder: &Path) -> bool {
+    fs::read_to_string(folder.join(SEAL)).is_ok_and(|seal| listed(folder).is_ok_and(|it| it == seal))
+}
+
+/// A line a file, sorted by name.
+fn listed(folder: &Path) -> io::Result<String> {
+    let mut lines = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let metadata = entry.metadata()?;
+        if metadata.is_file() && entry.file_name() != SEAL {
+            lines.push(format!("{}\t{}\n", metadata.len(), entry.file_name().to_string_lossy()));
+        }
+    }
+    lines.sort();
+    // Not even an entry without files has an empty list.
+    Ok(format!("{} files\n{}", lines.len(), lines.concat()))
 }
 
 /// Waits for whoever makes the same entry: two would do the same work. Where files cannot be

@@ -48,14 +48,19 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
 }
 
 fn found(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
-    let mut paths = Vec::new();
+    let (mut paths, mut folders) = (Vec::new(), HashSet::new());
     for argument in arguments {
-        collect(argument, 0, &mut paths)?;
+        collect(argument, 0, (&mut paths, &mut folders))?;
     }
     Ok(paths)
 }
 
-fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), String> {
+/// Each folder once: links may lead back to it.
+fn collect(
+    path: &Path,
+    depth: usize,
+    (paths, folders): (&mut Vec<PathBuf>, &mut HashSet<PathBuf>),
+) -> Result<(), String> {
     if path != Path::new("-") && listing::is_list(path) && !path.is_dir() {
         paths.extend(listing::sources(Path::new(&shown(path)))?.0);
         return Ok(());
@@ -67,6 +72,9 @@ fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), St
     if depth > MAX_DEPTH {
         return Err(format!("{}: folders are nested too deeply", path.display()));
     }
+    if !folders.insert(path.canonicalize().unwrap_or_else(|_| path.to_owned())) {
+        return Ok(());
+    }
     let entries = fs::read_dir(path).map_err(|it| format!("{}: {it}", path.display()))?;
     let mut inside =
         entries.map(|it| it.map(|it| it.path())).collect::<Result<Vec<_>, _>>().map_err(|it| it.to_string())?;
@@ -74,7 +82,7 @@ fn collect(path: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), St
     for entry in inside {
         let hidden = entry.file_name().is_some_and(|it| it.to_string_lossy().starts_with('.'));
         if !hidden && (entry.is_dir() || listing::is_source(&entry)) {
-            collect(&entry, depth + 1, paths)?;
+            collect(&entry, depth + 1, (paths, folders))?;
         }
     }
     Ok(())
@@ -96,7 +104,7 @@ fn bytes(path: &Path) -> Result<(String, Vec<u8>), String> {
             .read_to_end(&mut bytes)
             .map_err(|it| format!("standard input: {it}"))
     } else {
-        let file = fs::File::open(path).map_err(|it| format!("{name}: {it}"))?;
+        let file = staunch_host::open_to_read(path).map_err(|it| format!("{name}: {it}"))?;
         file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(|it| format!("{name}: {it}"))
     };
     read?;

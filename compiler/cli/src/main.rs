@@ -1,5 +1,6 @@
 //! The command `staunch`: arguments, files, exit codes. What it promises is in `docs/cli.md`.
 
+mod apart;
 mod args;
 
 mod input;

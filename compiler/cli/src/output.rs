@@ -1,6 +1,8 @@
 //! Files, standard output, and standard error, whose readers may leave early.
 
+use staunch_host::Replacement;
 use std::fmt::Display;
+use std::fs::File;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 
@@ -24,7 +26,18 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
     if path == Path::new("-") {
         return print(bytes);
     }
-    std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
+    put(path, bytes, false).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+/// What had the name stays until the new file is whole; it may be running.
+fn put(path: &Path, bytes: &[u8], runs: bool) -> std::io::Result<()> {
+    let (replacement, mut file) = Replacement::create(path)?;
+    file.write_all(bytes)?;
+    // A device, as /dev/null, is left as it is.
+    if runs && file.metadata()?.is_file() {
+        allow_to_run(&file)?;
+    }
+    replacement.keep()
 }
 
 /// Whether a file can be written, which is asked before the work that it is for.
@@ -32,31 +45,31 @@ pub fn check(path: &Path) -> Result<(), String> {
     if path == Path::new("-") {
         return Ok(());
     }
-    let opened = std::fs::OpenOptions::new().append(true).create(true).open(path);
-    opened.map(drop).map_err(|error| format!("{}: {error}", path.display()))
+    // Opening a pipe would wait for its reader, and end what it reads.
+    if std::fs::metadata(path).is_ok_and(|it| !it.is_file() && !it.is_dir()) {
+        return Ok(());
+    }
+    Replacement::create(path).map(drop).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// Writes a file that can be run. One of that name may be running: it keeps its old contents.
+/// Writes a file that can be run.
 pub fn executable(path: &Path, bytes: &[u8]) -> Result<(), String> {
-    if path.is_file() {
-        let _ = std::fs::remove_file(path);
+    if path == Path::new("-") {
+        return print(bytes);
     }
-    write(path, bytes)?;
-    // A device, as /dev/null, is left as it is.
-    if path.is_file() && path != Path::new("-") { allow_to_run(path) } else { Ok(()) }
+    put(path, bytes, true).map_err(|error| format!("{}: {error}", path.display()))
 }
 
 #[cfg(unix)]
-fn allow_to_run(path: &Path) -> Result<(), String> {
+fn allow_to_run(file: &File) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
-    let shown = |error| format!("{}: {error}", path.display());
-    let mut permissions = std::fs::metadata(path).map_err(shown)?.permissions();
+    let mut permissions = file.metadata()?.permissions();
     // Whoever may read it may run it.
     permissions.set_mode(permissions.mode() | (permissions.mode() & 0o444) >> 2);
-    std::fs::set_permissions(path, permissions).map_err(shown)
+    file.set_permissions(permissions)
 }
 
 #[cfg(not(unix))]
-fn allow_to_run(_path: &Path) -> Result<(), String> {
+fn allow_to_run(_: &File) -> std::io::Result<()> {
     Ok(())
 }

@@ -1,16 +1,17 @@
 //! `staunch run`: in this process, or, for the Rust back end, as an executable of its own.
 
-use crate::REJECTED;
 use crate::args::{Backend, MessageFormat, Run};
 use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
+use crate::{REJECTED, apart};
 use staunch_host::{Machine, Map, Moment, Options};
 use staunch_ir::Program;
 use std::process::Command;
 
 pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
     let Some(program) = session.program_to_run(args.program.as_deref())? else { return Ok(REJECTED) };
+    apart::run(session, args)?;
     match args.backend {
         Backend::Native => {
             let (mut machine, map) = Native::new(&program)?;

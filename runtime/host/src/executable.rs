@@ -6,6 +6,7 @@ use crate::bench::bench;
 use crate::compiled::{Code, Compiled};
 use crate::map::Map;
 use crate::run::{Options, run, title};
+use crate::signal;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -17,6 +18,7 @@ pub fn main(code: Code) -> ExitCode {
 /// [`main`] with the arguments given, the executable's name first. Returns the exit code, for a
 /// C `main`.
 pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
+    signal::ignore_closed_pipes();
     let started = code.machine().and_then(|it| Ok((it, parse_options(arguments).map_err(Error::Usage)?)));
     let ((map, mut machine), wish) = match started {
         Ok(started) => started,

@@ -7,6 +7,7 @@ mod content;
 mod format;
 mod keeper;
 mod kept;
+mod lock;
 mod storage;
 mod text;
 mod writer;
@@ -37,7 +38,23 @@ pub(crate) struct Retention {
     path: PathBuf,
     /// What of the state is kept, in the order of the file.
     kept: Kept,
+    /// What is kept as it was after the last whole scan, and the clock then: a scan that faults, or one that the
+    /// power ends, leaves nothing of itself.
+    whole: Vec<u8>,
+    clock: Time,
+    /// The fault that ended a run, since which none has ended well; empty without one.
+    fault: String,
     saving: Saving,
+}
+
+/// How a run ends, for the next one to know.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ending<'a> {
+    Well,
+    /// By the fault that the text names.
+    Fault(&'a str),
+    /// Before it was done, but not by the program: what was known of faults stays.
+    Early,
 }
 
 /// How values get to the disk.
@@ -71,38 +88,42 @@ impl Retention {
         };
         let limit = LONGEST + 8 * map.size as u64;
         let (disk, bytes) = Disk::open(path, limit + 1).map_err(|error| Error::file(path, "read", error))?;
-        let (mut loaded, mut found) = (Loaded::default(), None);
+        let (mut loaded, mut found, mut fault) = (Loaded::default(), None, String::new());
         if let Some(bytes) = bytes {
             if bytes.len() as u64 > limit {
                 return Err(refused(&format!("it is longer than {limit} bytes")));
             }
             let content = format::recover(&bytes).map_err(|it| refused(&it.text()))?;
             loaded = retained.load(map, &content, machine).map_err(|it| refused(&it))?;
+            fault = content.found.as_ref().map_or_else(String::new, |it| it.fault.clone());
             found = content.found.filter(|_| layout.is_of(&bytes)).map(|it| (content.clock, it));
         }
         let saving = Saving::Now(Keeper::new(disk, layout, found));
         let kept = Kept::new(retained.ranges(), &Domain::of(map));
-        Ok((Self { path: path.to_owned(), kept, saving }, loaded))
+        let whole = kept.of(machine.state());
+        Ok((Self { path: path.to_owned(), kept, whole, clock: loaded.clock, fault, saving }, loaded))
     }
 
     /// From now on, changes are saved while the program runs.
-    pub fn save_always(&mut self, pace: Pace, state: &[u8]) -> Result<(), Error> {
+    pub fn save_always(&mut self, pace: Pace) -> Result<(), Error> {
         let Saving::Now(keeper) = std::mem::replace(&mut self.saving, Saving::Ended) else {
             return Ok(());
         };
-        let values = self.kept.of(state);
         let path = self.path.clone();
         let tell = move |text: &str| crate::error::tell(format_args!("warning: {}: {text}", path.display()));
-        let writer = Writer::start(keeper, pace, values, tell);
+        let writer = Writer::start(keeper, pace, (&self.whole, &self.fault), tell);
         self.saving = Saving::Always(writer.map_err(|error| Error::file(&self.path, "write", error))?);
         Ok(())
     }
 
-    /// After each scan: hands over what has changed, where changes are saved while the program runs.
+    /// After each whole scan: remembers what is kept, and hands over what has changed, where changes are saved
+    /// while the program runs. It allocates nothing.
     pub fn offer(&mut self, clock: Time, state: &[u8]) {
+        self.clock = clock;
+        let changed = self.kept.copy_changed(state, &mut self.whole);
         match &mut self.saving {
-            Saving::Always(writer) => writer.offer(clock, &self.kept, state),
-            Saving::Now(_) | Saving::Ended => {}
+            Saving::Always(writer) if changed => writer.offer(clock, &self.whole),
+            Saving::Always(_) | Saving::Now(_) | Saving::Ended => {}
         }
     }
 
@@ -111,24 +132,31 @@ impl Retention {
         self.offer(clock, state);
         match &mut self.saving {
             Saving::Now(keeper) => {
-                keeper.save(clock, &self.kept.of(state)).map_err(|error| Error::file(&self.path, "write", error))
+                let saved = keeper.save(clock, &self.whole, &self.fault);
+                saved.map_err(|error| Error::file(&self.path, "write", error))
             }
             Saving::Always(_) | Saving::Ended => Ok(()),
         }
     }
 
-    /// Saves the values and the clock of a run that ends, and waits for the disk.
-    pub fn finish(&mut self, clock: Time, state: &[u8]) -> Result<(), Error> {
-        match std::mem::replace(&mut self.saving, Saving::Ended) {
-            Saving::Always(writer) => {
-                let saved = writer.finish(clock, &self.kept, state);
-                saved.map_err(|error| Error::file(&self.path, "write", error))
-            }
-            saving @ (Saving::Now(_) | Saving::Ended) => {
-                self.saving = saving;
-                self.save(clock, state)
-            }
+    /// Saves the values and the clock of the last whole scan of a run that ends, and how it ends; waits for the
+    /// disk.
+    pub fn finish(&mut self, ending: Ending<'_>) -> Result<(), Error> {
+        match ending {
+            Ending::Well => self.fault.clear(),
+            Ending::Fault(text) => text.clone_into(&mut self.fault),
+            Ending::Early => {}
         }
+        let saved = match std::mem::replace(&mut self.saving, Saving::Ended) {
+            Saving::Always(writer) => writer.finish(self.clock, &self.whole, &self.fault),
+            Saving::Now(mut keeper) => {
+                let saved = keeper.save(self.clock, &self.whole, &self.fault);
+                self.saving = Saving::Now(keeper);
+                saved
+            }
+            Saving::Ended => Ok(()),
+        };
+        saved.map_err(|error| Error::file(&self.path, "write", error))
     }
 }
 
@@ -177,6 +205,12 @@ impl Retained {
             return Err(format!("it belongs to another program: to PROGRAM {theirs}, not {}", self.programs));
         }
         let mut loaded = Loaded { clock: content.clock, notes: Vec::new() };
+        if let Some(fault) = content.found.as_ref().map(|it| &it.fault).filter(|it| !it.is_empty()) {
+            loaded.notes.push(format!(
+                "a run ended by a fault, and none has ended without one since: {fault}; its values are those of \
+                 the scan before"
+            ));
+        }
         if content.found.as_ref().is_some_and(|it: &Found| it.other_is_broken) {
             let text =
                 "one of its two states is not whole, as after a power cut while it was written; the other is used";

@@ -5,7 +5,8 @@ use crate::json::quote;
 use crate::map::Map;
 use crate::messages::Messages;
 use crate::path::{nearest, same};
-use crate::retain::{Pace, Retention};
+use crate::replace::{Role, keep_apart};
+use crate::retain::{Ending, Pace, Retention};
 use crate::schedule::Schedule;
 use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
@@ -90,6 +91,15 @@ impl Options {
 }
 
 impl Options {
+    /// No file is read and written, or written twice.
+    fn keep_apart(&self) -> Result<(), String> {
+        let inputs: Vec<Role<'_>> = self.stimulus.iter().map(|it| ("--stimulus", it.as_path())).collect();
+        let outputs = [("--retain", &self.retain), ("--trace", &self.trace)];
+        let outputs: Vec<Role<'_>> =
+            outputs.iter().filter_map(|(what, path)| Some((*what, path.as_deref()?))).collect();
+        keep_apart(&inputs, &outputs)
+    }
+
     /// Says on standard error what went wrong; with `json`, as an object where all objects go.
     pub fn report(&self, error: &Error) {
         match error {
@@ -112,7 +122,7 @@ impl Options {
 
 impl Summary {
     /// Times in nanoseconds.
-    fn json(&self, title: &str) -> String {
+    fn json(&self, title: &str, lost: u64) -> String {
         let Self { scans, time, elapsed, real } = self;
         let mut text = format!(
             "{{\"reason\":\"run\",\"program\":{},\"scans\":{scans},\"time_ns\":{time},\"elapsed_ns\":{}",
@@ -124,6 +134,9 @@ impl Summary {
             let shortest = if *shortest == Duration::MAX { 0 } else { shortest.as_nanos() };
             let longest = longest.as_nanos();
             text += &format!(",\"overruns\":{overruns},\"shortest_ns\":{shortest},\"longest_ns\":{longest}");
+        }
+        if lost > 0 {
+            text += &format!(",\"rows_lost\":{lost}");
         }
         text + "}"
     }
@@ -160,6 +173,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         return Err(Error::Usage("the cycle is a time above zero".to_owned()));
     }
     options.trace.as_deref().map_or(Ok(()), trace::check_name)?;
+    options.keep_apart().map_err(Error::Usage)?;
     let stimulus = options.stimulus.as_deref().map(|path| Stimulus::read(path, map, &running)).transpose()?;
     let columns = match options.shows_values() {
         true => columns(map, &running, options.vars.as_deref()).map_err(|it| Error::Usage(format!("--vars: {it}")))?,
@@ -180,21 +194,24 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         start: Start::of(map),
         messages: Messages::of(map),
         epoch: 0,
-        out: Output { rows: 0, trace: None, table: Table::new(terminal::width()) },
+        out: Output { rows: 0, lost: 0, trace: None, table: Table::new(terminal::width()) },
         clock: None,
         summary: Summary::default(),
         minor_faults: MinorFaults::default(),
     };
     runner.start()?;
     if let Some(path) = &options.trace {
-        runner.out.trace = Some(Trace::create(path, &subject)?);
+        let trace = Trace::create(path, &subject, options.realtime);
+        runner.out.trace = runner.needed(trace)?;
     }
     let ran = runner.scans(&subject);
-    let finished = runner.finish(&subject);
-    runner.tell_minor_faults()?;
+    let finished = runner.finish(&subject, &ran);
+    let told = runner.tell_minor_faults();
+    runner.needed(told)?;
     ran.and(finished)?;
     if options.json {
-        options.print_json(&runner.summary.json(&subject.title))?;
+        let printed = options.print_json(&runner.summary.json(&subject.title, runner.out.lost));
+        runner.needed(printed)?;
     }
     Ok(runner.summary)
 }
@@ -261,6 +278,8 @@ struct Runner<'a> {
 struct Output {
     /// Rows within the window that is shown.
     rows: u64,
+    /// Of these, how many a trace that cannot be written lacks.
+    lost: u64,
     trace: Option<Trace>,
     table: Table,
 }
@@ -286,7 +305,7 @@ impl Runner<'_> {
             if let Some(retention) = &mut self.retention {
                 let within = self.options.retain_within.unwrap_or(Options::RETAIN_WITHIN);
                 let pace = Pace::within(Duration::from_nanos(u64::try_from(within).unwrap_or(0)));
-                retention.save_always(pace, self.machine.state())?;
+                retention.save_always(pace)?;
             }
             self.clock = Some(Clock::start());
         }
@@ -385,11 +404,28 @@ impl Runner<'_> {
         Ok(())
     }
 
+    /// What an output came to. A run in real time controls a machine: it goes on without an output that cannot be
+    /// written, and says so.
+    fn needed<T>(&self, written: Result<T, Error>) -> Result<Option<T>, Error> {
+        match written {
+            Ok(it) => Ok(Some(it)),
+            Err(error) if self.options.realtime => {
+                crate::error::tell(format_args!("warning: {error}; the program runs on without it"));
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
     /// Says on standard error, or as JSON, what the program has logged.
     fn tell(&mut self, scan: u64) -> Result<(), Error> {
         for message in self.messages.take(self.map, self.machine.state()) {
             if self.options.json {
-                self.options.print_json(&message.json(scan))?;
+                let printed = self.options.print_json(&message.json(scan));
+                // In real time, who reads no objects is told of that at the end.
+                if !self.options.realtime {
+                    printed?
+                }
             } else if !self.options.quiet {
                 crate::error::tell(message.line(scan));
             }
@@ -446,9 +482,18 @@ impl Runner<'_> {
         self.out.rows += 1;
         let row = Row { scan: self.summary.scans, time: now, state: self.machine.state() };
         match &mut self.out.trace {
-            Some(trace) => {
-                trace.row(subject, row)?;
-                if self.options.realtime { trace.flush() } else { Ok(()) }
+            Some(trace) if self.options.realtime => {
+                let written = trace.row(subject, row).and_then(|()| trace.flush());
+                if self.needed(written)?.is_none() {
+                    self.out.trace = None;
+                    self.out.lost += 1;
+                }
+                Ok(())
+            }
+            Some(trace) => trace.row(subject, row),
+            None if self.options.trace.is_some() => {
+                self.out.lost += 1;
+                Ok(())
             }
             None => {
                 if self.options.table {
@@ -459,20 +504,35 @@ impl Runner<'_> {
         }
     }
 
-    fn finish(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
-        let clock = self.saved_clock();
-        let saved = self.retention.as_mut().map_or(Ok(()), |it| it.finish(clock, self.machine.state()));
+    fn finish(&mut self, subject: &Subject<'_>, ran: &Result<(), Error>) -> Result<(), Error> {
+        let text = ran.as_ref().err().map(Error::to_string);
+        let ending = match (ran, &text) {
+            (Err(Error::Fault { .. }), Some(text)) => Ending::Fault(text),
+            (Err(_), _) => Ending::Early,
+            (Ok(()), _) => Ending::Well,
+        };
+        let saved = self.retention.as_mut().map_or(Ok(()), |it| it.finish(ending));
         if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
             crate::error::tell(format_args!("note: no scan lies between --from and --to"));
         }
+        let written = self.show(subject);
+        let written = self.needed(written).map(drop);
+        if let (Some(path), lost @ 1..) = (&self.options.trace, self.out.lost) {
+            let plural = if lost == 1 { "" } else { "s" };
+            crate::error::tell(format_args!("warning: {}: {lost} row{plural} could not be written", path.display()));
+        }
+        written.and(saved)
+    }
+
+    fn show(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
         match &mut self.out.trace {
-            Some(trace) => trace.finish(subject).and(saved),
-            None if self.options.quiet || self.options.json => saved,
+            Some(trace) => trace.finish(subject),
+            None if self.options.quiet || self.options.json || self.options.trace.is_some() => Ok(()),
             None => {
                 let mut text = Vec::new();
                 let printed = self.out.table.print(subject, &mut text).and_then(|()| self.totals(subject, &mut text));
                 let printed = printed.and_then(|()| io::stdout().write_all(&text)).and_then(|()| io::stdout().flush());
-                printed.map_err(|error| Error::file("standard output".as_ref(), "write", error)).and(saved)
+                printed.map_err(|error| Error::file("standard output".as_ref(), "write", error))
             }
         }
     }

@@ -56,6 +56,13 @@ mod unix {
         unsafe { alarm(seconds) };
     }
 
+    pub fn ignore_closed_pipes() {
+        const PIPE: i32 = 13;
+        const IGNORE: usize = 1;
+        // SAFETY: to ignore a signal calls nothing.
+        unsafe { signal(PIPE, IGNORE) };
+    }
+
     pub fn listen() {
         let handler = stop as extern "C" fn(i32);
         for number in [INTERRUPT, TERMINATE] {
@@ -66,6 +73,13 @@ mod unix {
         // SAFETY: as above.
         unsafe { signal(ALARM, handler as usize) };
     }
+}
+
+/// An output whose reader has gone is an error to be handled, and no end of the process: Rust's own `main` makes
+/// it so, and C's does not.
+pub(crate) fn ignore_closed_pipes() {
+    #[cfg(unix)]
+    unix::ignore_closed_pipes();
 }
 
 /// From now on, SIGINT and SIGTERM ask for an end instead of making one.

@@ -5,9 +5,11 @@ use crate::csv::{self, Cell};
 use crate::literal;
 use crate::map::{Map, Type};
 use crate::path::{self, Place, same};
+use crate::replace::open_to_read;
 use crate::start::Event;
 use staunch_runtime::Time;
 use std::borrow::Cow;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 /// Rows in the order in which they act.
@@ -72,7 +74,9 @@ pub(crate) const BAR: &str = "|";
 
 impl Stimulus {
     pub fn read(path: &Path, map: &Map, running: &[usize]) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|error| Error::file(path, "read", error))?;
+        let mut bytes = Vec::new();
+        let read = open_to_read(path).and_then(|mut file| file.read_to_end(&mut bytes));
+        read.map_err(|error| Error::file(path, "read", error))?;
         let text = csv::decoded(&bytes);
         Self::parse(path, &text, map, running)
     }

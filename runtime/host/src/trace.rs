@@ -11,6 +11,7 @@ mod waves;
 use crate::Error;
 use crate::column::Column;
 use crate::map::Map;
+use crate::replace::{Replacement, open_at_once};
 use crate::value;
 use staunch_runtime::Time;
 use std::fs::File;
@@ -91,24 +92,24 @@ pub(crate) fn check_name(path: &Path) -> Result<(), Error> {
 pub(crate) struct Trace {
     path: PathBuf,
     sink: Box<dyn Sink>,
+    /// A file that is there as a whole at the end.
+    replacement: Option<Replacement>,
 }
 
 impl Trace {
-    /// The file's ending says the form; `-` is standard output.
-    pub fn create(path: &Path, subject: &Subject<'_>) -> Result<Self, Error> {
+    /// The file's ending says the form; `-` is standard output. In real time each row is there after its scan, under
+    /// the file's own name, and nothing waits for who reads it.
+    pub fn create(path: &Path, subject: &Subject<'_>, realtime: bool) -> Result<Self, Error> {
         let file = |error| Error::file(path, "write", error);
         let form = Form::of(path)?;
-        let out: Box<dyn Write> = match path.as_os_str() == "-" {
-            true => Box::new(BufWriter::new(io::stdout())),
-            false => Box::new(BufWriter::with_capacity(1 << 16, File::create(path).map_err(file)?)),
-        };
+        let (out, replacement) = opened(path, realtime).map_err(file)?;
         let sink = match form {
             Form::Rows => rows::Rows::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
             Form::Waves => waves::Waves::new(out, subject).map(|it| Box::new(it) as Box<dyn Sink>),
             Form::Page => Ok(Box::new(page::Page::new(out, subject)) as Box<dyn Sink>),
             Form::Diagram => Ok(Box::new(diagram::Diagram::new(out, subject)) as Box<dyn Sink>),
         };
-        Ok(Self { path: path.to_owned(), sink: sink.map_err(file)? })
+        Ok(Self { path: path.to_owned(), sink: sink.map_err(file)?, replacement })
     }
 
     pub fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) -> Result<(), Error> {
@@ -117,12 +118,25 @@ impl Trace {
 
     pub fn finish(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
         let finished = self.sink.finish(subject).and_then(|()| self.sink.flush());
+        let finished = finished.and_then(|()| self.replacement.take().map_or(Ok(()), Replacement::keep));
         finished.map_err(|error| Error::file(&self.path, "write", error))
     }
 
     pub fn flush(&mut self) -> Result<(), Error> {
         self.sink.flush().map_err(|error| Error::file(&self.path, "write", error))
     }
+}
+
+fn opened(path: &Path, realtime: bool) -> io::Result<(Box<dyn Write>, Option<Replacement>)> {
+    let buffered = |file: File| Box::new(BufWriter::with_capacity(1 << 16, file));
+    if path.as_os_str() == "-" {
+        return Ok((Box::new(BufWriter::new(io::stdout())), None));
+    }
+    if realtime {
+        return Ok((buffered(open_at_once(path)?), None));
+    }
+    let (replacement, file) = Replacement::create(path)?;
+    Ok((buffered(file), Some(replacement)))
 }
 
 /// Milliseconds without needless zeros.

@@ -44,6 +44,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
     let common = Common { dialect: Some(args.from.dialect), ..common.clone() };
     let from = Session::start(&common, &args.files)?;
+    crate::apart::compare(&from, args)?;
     fixed::check(
         &from.sources,
         args.from.dialect,

@@ -39,6 +39,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     if is_covered && args.backend == Backend::Rust {
         return Err("coverage is measured with --backend native or interpret".to_owned());
     }
+    crate::apart::test(session, args)?;
     coverage::check(&args.coverage)?;
     args.junit.iter().try_for_each(|it| output::check(it))?;
     let counts = Mutex::new(Counts::of(program, &session.coverage));

@@ -69,3 +69,23 @@ fn it_is_private_and_what_is_old_goes() {
     assert_eq!((of_kind("runtime-"), of_kind("program-")), (1, 3));
     run(&folder).out(0);
 }
+
+/// What a power cut leaves of a file whose name was on disk before its bytes were.
+#[test]
+fn an_entry_that_is_not_whole_is_made_again() {
+    let folder = Folder::with("cache_torn", &[("main.st", COUNTER)]);
+    let cache = folder.0.join("cache");
+    let traced = || {
+        let mut command = folder.command("run main.st --scans 1 --backend rust --trace - --vars full");
+        Ran::of(command.env("STAUNCH_CACHE", &cache).output().unwrap()).out(0)
+    };
+    let expected = "scan,time_ms,full\n1,0,FALSE\n";
+    assert_eq!(traced(), expected);
+    let entries = || fs::read_dir(&cache).unwrap().map(|it| it.unwrap().path()).filter(|it| it.is_dir());
+    for file in ["program", ".files"] {
+        let torn: Vec<_> = entries().map(|it| it.join(file)).filter(|it| it.exists()).collect();
+        assert!(!torn.is_empty());
+        torn.iter().for_each(|it| fs::write(it, "").unwrap());
+        assert_eq!(traced(), expected, "{file}");
+    }
+}

@@ -17,6 +17,8 @@ mod page;
 mod power;
 mod retain;
 mod run;
+#[cfg(unix)]
+mod safety;
 mod stimulus;
 mod tables;
 mod tcunit;

@@ -53,6 +53,8 @@ fn an_edited_program_takes_what_still_fits() {
 /// The head's text takes less than a sector; the first slot is the next, with a head of 24 bytes.
 const SECTOR: usize = 4096;
 const SLOT_HEAD: usize = 24;
+/// Room for the text of a fault, after the values.
+const FAULT: usize = 232;
 
 #[test]
 fn a_damaged_file_is_refused_and_kept() {
@@ -61,7 +63,7 @@ fn a_damaged_file_is_refused_and_kept() {
     let whole = std::fs::read(folder.0.join("plant.retain")).unwrap();
     let head = whole.iter().position(|it| *it == 0).unwrap();
     let values = 2 + 4;
-    for cut in [0, 1, head / 2, head, SECTOR, SECTOR + SLOT_HEAD + values - 1] {
+    for cut in [0, 1, head / 2, head, SECTOR, SECTOR + SLOT_HEAD + values + FAULT - 1] {
         folder.write("plant.retain", &whole[..cut]);
         has(&folder.staunch(RUN).err(2), &["plant.retain", "move it away"]);
         assert_eq!(std::fs::read(folder.0.join("plant.retain")).unwrap(), &whole[..cut]);
@@ -137,14 +139,14 @@ fn forged(good: &[u8]) -> [Vec<u8>; 2] {
             size += count.parse::<usize>().unwrap();
             format!("{path}\t{ty}\t{}\n", "ff".repeat(count.parse().unwrap()))
         }
-        _ => format!("{line}\n").replace("variables 3", "variables 2"),
+        _ => format!("{line}\n").replace("variables 4", "variables 2"),
     };
     let text: String = head.lines().map(old).collect();
     assert!(head.lines().count() > 7 && text.contains("STRING[4]\tffffffff"), "{text}");
     let mut slots = good.to_vec();
     slots[SECTOR + SLOT_HEAD..SECTOR + SLOT_HEAD + size].fill(0xFF);
     let mut covered = checksum(head.as_bytes()).to_le_bytes().to_vec();
-    covered.extend(&slots[SECTOR + 4..SECTOR + SLOT_HEAD + size]);
+    covered.extend(&slots[SECTOR + 4..SECTOR + SLOT_HEAD + size + FAULT]);
     slots[SECTOR..SECTOR + 4].copy_from_slice(&checksum(&covered).to_le_bytes());
     [format!("{text}crc32\t{:08x}\n", checksum(text.as_bytes())).into_bytes(), slots]
 }

@@ -184,11 +184,8 @@ impl<'t> Table<'t> {
     /// What lies at `distance` bytes from where a reference points, as `view` wants to see it.
     pub fn part(&self, bits: u64, distance: u64, view: View) -> Result<Part, FaultKind> {
         let (offset, rest) = self.locate(bits, distance)?;
-        if let View::Number(size) = view
-            && size as usize <= rest
-            && offset.checked_rem(size as usize) == Some(0)
-            && self.is_plain(bits)
-        {
+        let fits = |size: usize| size <= rest && offset.checked_rem(size) == Some(0);
+        if matches!(view, View::Number(size) if fits(size as usize)) && self.is_plain(bits) {
             return Ok(Part::Bytes { at: offset, rest });
         }
         let around = self.around(bits);

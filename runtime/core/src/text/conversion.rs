@@ -310,9 +310,10 @@ impl Significant {
     /// Takes digits from the start of `text`, without the character that is `passed` over; the rest of it.
     fn take<'t>(&mut self, text: &'t [u8], is_fraction: bool, passed: u8) -> &'t [u8] {
         let mut rest = text;
-        while let Some((byte, after)) = rest.split_first()
-            && (byte.is_ascii_digit() || *byte == passed)
-        {
+        while let Some((byte, after)) = rest.split_first() {
+            if !byte.is_ascii_digit() && *byte != passed {
+                break;
+            }
             rest = after;
             if *byte == passed {
                 continue;

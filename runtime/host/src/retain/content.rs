@@ -3,8 +3,10 @@
 use staunch_runtime::Time;
 
 /// Version 1 named types without what they mean.
-pub(super) const VERSION: &str = "3";
-/// The version before, which was text alone, written as a whole.
+pub(super) const VERSION: &str = "4";
+/// The version before, whose slots have no room for a fault.
+pub(super) const WITHOUT_FAULT: &str = "3";
+/// The one before that, which was text alone, written as a whole.
 pub(super) const TEXT_VERSION: &str = "2";
 
 /// One of the two slots.
@@ -42,6 +44,8 @@ pub(super) struct Found {
     pub slot: Slot,
     pub sequence: u64,
     pub values: Vec<u8>,
+    /// The fault that ended a run, since which none has ended well; empty without one.
+    pub fault: String,
     /// The other slot holds something that is no whole record: its writing did not end, or it was damaged.
     pub other_is_broken: bool,
 }
@@ -59,7 +63,7 @@ impl Refusal {
         match self {
             Self::Foreign => "it does not hold retained variables".to_owned(),
             Self::Version(other) => {
-                format!("its format is version {other}, and this Staunch reads version {VERSION} and {TEXT_VERSION}")
+                format!("its format is version {other}, and this Staunch reads versions {TEXT_VERSION} to {VERSION}")
             }
             Self::Damaged(what) => format!("it is damaged: {what}"),
         }

@@ -5,9 +5,9 @@
 //! type and size, and a checksum. Two slots follow, each on sectors of its own, of which one is
 //! written while the other holds the state before: a checksum over all of the rest and the head's
 //! checksum, a sequence number, the program's clock, and the variables' bytes in the order of the
-//! head's lines. Numbers of the slot are little endian, and so are values on every supported target.
+//! head's lines, and the fault that ended the last run. Numbers of the slot are little endian, and so are values on every supported target.
 
-use super::content::{Content, Found, Refusal, Slot, TEXT_VERSION, VERSION};
+use super::content::{Content, Found, Refusal, Slot, TEXT_VERSION, VERSION, WITHOUT_FAULT};
 use super::text;
 use staunch_runtime::{Crc32, Time, crc32};
 use std::fmt::Write as _;
@@ -20,6 +20,8 @@ pub(super) const SECTOR: usize = 4096;
 
 /// Checksum, a word that is 0, sequence number, clock.
 const SLOT_HEAD: usize = 24;
+/// The fault's text after the values, with zeros after it: a slot's head and this are 256 bytes.
+const FAULT: usize = 232;
 
 /// A variable as the file names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,6 +39,8 @@ pub(super) struct Layout {
     fingerprint: u32,
     /// Bytes of all values.
     size: usize,
+    /// Bytes for the text of a fault.
+    fault: usize,
 }
 
 /// What a slot holds.
@@ -46,18 +50,30 @@ pub(super) struct Record<'a> {
     pub sequence: u64,
     pub clock: Time,
     pub values: &'a [u8],
+    /// Why the run ended; empty where it did not fault. What is too long loses its beginning: the end has the
+    /// kind and the line.
+    pub fault: &'a str,
 }
 
 impl Layout {
     pub fn new<'a>(programs: &str, variables: impl Iterator<Item = (&'a str, &'a str, usize)>) -> Self {
-        let (mut head, mut size) = (format!("{TITLE}{VERSION}\nprogram\t{programs}\n"), 0);
+        Self::of_version(VERSION, programs, variables)
+    }
+
+    fn of_version<'a>(
+        version: &str,
+        programs: &str,
+        variables: impl Iterator<Item = (&'a str, &'a str, usize)>,
+    ) -> Self {
+        let (mut head, mut size) = (format!("{TITLE}{version}\nprogram\t{programs}\n"), 0);
+        let fault = if version == WITHOUT_FAULT { 0 } else { FAULT };
         for (path, ty, bytes) in variables {
             let _ = writeln!(head, "{path}\t{ty}\t{bytes}");
             size += bytes;
         }
         let fingerprint = crc32(head.as_bytes());
         let _ = writeln!(head, "{CHECKSUM}{fingerprint:08x}");
-        Self { head, fingerprint, size }
+        Self { head, fingerprint, size, fault }
     }
 
     /// Where a slot is in the file.
@@ -69,8 +85,13 @@ impl Layout {
         }
     }
 
+    /// Bytes of a slot that mean something.
+    fn used(&self) -> usize {
+        SLOT_HEAD + self.size + self.fault
+    }
+
     fn slot_size(&self) -> usize {
-        (SLOT_HEAD + self.size).next_multiple_of(SECTOR)
+        self.used().next_multiple_of(SECTOR)
     }
 
     fn file_size(&self) -> usize {
@@ -89,6 +110,8 @@ impl Layout {
         out.extend(record.sequence.to_le_bytes());
         out.extend(record.clock.to_le_bytes());
         out.extend(record.values);
+        out.extend(tail(record.fault, self.fault).bytes());
+        out.resize(self.used(), 0);
         let checksum = slot_checksum(self.fingerprint, out);
         out[..4].copy_from_slice(&checksum.to_le_bytes());
     }
@@ -117,15 +140,16 @@ fn slot_checksum(fingerprint: u32, slot: &[u8]) -> u32 {
 pub(super) fn recover(file: &[u8]) -> Result<Content, Refusal> {
     let title = String::from_utf8_lossy(file.split(|it| *it == b'\n').next().unwrap_or_default());
     match title.strip_prefix(TITLE).map(str::trim_end) {
-        Some(VERSION) => recover_slots(file),
+        Some(version @ (VERSION | WITHOUT_FAULT)) => recover_slots(file, version),
         Some(TEXT_VERSION) => text::recover(file),
         Some(other) => Err(Refusal::Version(other.to_owned())),
         None => Err(Refusal::Foreign),
     }
 }
 
-fn recover_slots(file: &[u8]) -> Result<Content, Refusal> {
-    let (layout, programs, variables) = head(file).ok_or(Refusal::Damaged("its head's checksum does not match"))?;
+fn recover_slots(file: &[u8], version: &str) -> Result<Content, Refusal> {
+    let (layout, programs, variables) =
+        head(file, version).ok_or(Refusal::Damaged("its head's checksum does not match"))?;
     let slots = Slot::BOTH.map(|slot| slot_at(file, &layout, slot));
     let [first, second] = slots.map(|it| decode_slot(&layout, it?));
     let (slot, record) = match (first, second) {
@@ -146,12 +170,18 @@ fn recover_slots(file: &[u8]) -> Result<Content, Refusal> {
         programs,
         clock: record.clock,
         variables: variables.collect(),
-        found: Some(Found { slot, sequence: record.sequence, values: record.values.to_vec(), other_is_broken }),
+        found: Some(Found {
+            slot,
+            sequence: record.sequence,
+            values: record.values.to_vec(),
+            fault: record.fault.to_owned(),
+            other_is_broken,
+        }),
     })
 }
 
 /// The head's layout, PROGRAMs and variables, if its checksum is right.
-fn head(file: &[u8]) -> Option<(Layout, String, Vec<Named>)> {
+fn head(file: &[u8], version: &str) -> Option<(Layout, String, Vec<Named>)> {
     let last = CHECKSUM.len() + 9;
     let line = format!("\n{CHECKSUM}");
     let at = 1 + file.windows(line.len()).position(|it| it == line.as_bytes())?;
@@ -160,7 +190,8 @@ fn head(file: &[u8]) -> Option<(Layout, String, Vec<Named>)> {
     let programs = lines.next()?.strip_prefix("program\t")?.to_owned();
     let variables = lines.map(named).collect::<Option<Vec<_>>>()?;
     variables.iter().try_fold(0_usize, |sum, it| sum.checked_add(it.size)).filter(|it| *it <= file.len())?;
-    let layout = Layout::new(&programs, variables.iter().map(|it| (it.path.as_str(), it.ty.as_str(), it.size)));
+    let rows = variables.iter().map(|it| (it.path.as_str(), it.ty.as_str(), it.size));
+    let layout = Layout::of_version(version, &programs, rows);
     // What reads as the same head is the same text, checksum included.
     (layout.head == head).then_some((layout, programs, variables))
 }
@@ -174,15 +205,23 @@ fn named(line: &str) -> Option<Named> {
 
 fn slot_at<'a>(file: &'a [u8], layout: &Layout, slot: Slot) -> Option<&'a [u8]> {
     let at = layout.offset(slot);
-    file.get(at..at + SLOT_HEAD + layout.size)
+    file.get(at..at + layout.used())
 }
 
 fn decode_slot<'a>(layout: &Layout, slot: &'a [u8]) -> Option<Record<'a>> {
-    let (head, values) = slot.split_first_chunk::<SLOT_HEAD>()?;
+    let (head, rest) = slot.split_first_chunk::<SLOT_HEAD>()?;
+    let (values, fault) = rest.split_at_checked(layout.size)?;
+    let fault = std::str::from_utf8(fault).unwrap_or_default().trim_end_matches('\0');
     let checksum = u32::from_le_bytes(*head.first_chunk()?);
     let sequence = u64::from_le_bytes(*head[8..].first_chunk()?);
     let clock = Time::from_le_bytes(*head.last_chunk()?);
-    (checksum == slot_checksum(layout.fingerprint, slot)).then_some(Record { sequence, clock, values })
+    (checksum == slot_checksum(layout.fingerprint, slot)).then_some(Record { sequence, clock, values, fault })
+}
+
+/// The last of a text, as many bytes as there is room for.
+fn tail(text: &str, room: usize) -> &str {
+    let from = (text.len().saturating_sub(room)..=text.len()).find(|at| text.is_char_boundary(*at));
+    from.map_or("", |it| &text[it..])
 }
 
 #[cfg(test)]

@@ -41,26 +41,26 @@ impl<S: Storage> Keeper<S> {
     ///
     /// A file that is full to its end can still be written inside, and one whose disk fails in a place can be
     /// made anew in another.
-    pub fn save(&mut self, clock: Time, values: &[u8]) -> io::Result<()> {
-        match self.save_inside(clock, values) {
+    pub fn save(&mut self, clock: Time, values: &[u8], fault: &str) -> io::Result<()> {
+        match self.save_inside(clock, values, fault) {
             Ok(true) => Ok(()),
-            Ok(false) | Err(_) => self.save_anew(clock, values),
+            Ok(false) | Err(_) => self.save_anew(clock, values, fault),
         }
     }
 
     /// Into the slot that may be written; FALSE if there is none.
-    fn save_inside(&mut self, clock: Time, values: &[u8]) -> io::Result<bool> {
+    fn save_inside(&mut self, clock: Time, values: &[u8], fault: &str) -> io::Result<bool> {
         let Some(good) = &mut self.good else { return Ok(false) };
         let slot = good.slot;
         if let Some((clock, found)) = &good.found {
             // The same bytes in the same place: whatever of them gets there, the record is whole, or the
             // other slot's is what it would have been.
-            let (sequence, clock, values) = (found.sequence, *clock, found.values.clone());
-            self.write_slot(slot, Record { sequence, clock, values: &values })?;
+            let (clock, Found { sequence, values, fault, .. }) = (*clock, found.clone());
+            self.write_slot(slot, Record { sequence, clock, values: &values, fault: &fault })?;
             self.storage.sync_name()?;
         }
         self.sequence += 1;
-        self.write_slot(slot.other(), Record { sequence: self.sequence, clock, values })?;
+        self.write_slot(slot.other(), Record { sequence: self.sequence, clock, values, fault })?;
         self.good = Some(Good { slot: slot.other(), found: None });
         Ok(true)
     }
@@ -72,9 +72,9 @@ impl<S: Storage> Keeper<S> {
     }
 
     /// As a new file.
-    fn save_anew(&mut self, clock: Time, values: &[u8]) -> io::Result<()> {
+    fn save_anew(&mut self, clock: Time, values: &[u8], fault: &str) -> io::Result<()> {
         self.sequence += 1;
-        let file = self.layout.encode_file(Record { sequence: self.sequence, clock, values });
+        let file = self.layout.encode_file(Record { sequence: self.sequence, clock, values, fault });
         let written = self.storage.create().and_then(|()| {
             write_all(&mut self.storage, Which::New, 0, &file)?;
             self.storage.sync(Which::New)

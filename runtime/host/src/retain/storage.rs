@@ -1,5 +1,7 @@
 //! Where the bytes of retained variables go: a file, and a new one beside it that can take its place.
 
+use super::lock;
+use crate::replace::followed;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, Read as _, Seek as _, SeekFrom, Write as _};
@@ -55,15 +57,25 @@ pub(super) struct Disk {
     aside: PathBuf,
     kept: Option<File>,
     new: Option<File>,
+    /// Held as long as the file may be written.
+    _lock: Option<File>,
 }
 
 impl Disk {
     /// The disk, and the first `limit` bytes of the file if there is one. What is read is what is written
     /// later, whatever happens to the name.
+    ///
+    /// A symbolic link stays: what it leads to is read and written.
     pub fn open(path: &Path, limit: u64) -> io::Result<(Self, Option<Vec<u8>>)> {
+        let path = &followed(path)?;
+        if std::fs::metadata(path).is_ok_and(|it| !it.is_file()) {
+            return Err(io::Error::other("retained variables need a file, and it is something else"));
+        }
+        let lock = lock::take(path)?;
         let mut name: OsString = path.file_name().unwrap_or_default().to_owned();
         name.push(format!(".{}.new", std::process::id()));
-        let mut disk = Self { path: path.to_owned(), aside: path.with_file_name(name), kept: None, new: None };
+        let mut disk =
+            Self { path: path.to_owned(), aside: path.with_file_name(name), kept: None, new: None, _lock: lock };
         let both = File::options().read(true).write(true).open(path);
         // A file that may only be read can still be replaced.
         let file = both.or_else(|_| File::open(path));

@@ -19,7 +19,7 @@ fn load(map: &Map, path: &Path, machine: &mut Bytes) -> Result<Loaded, Error> {
 /// Saves a state in place of what the file held.
 fn save(map: &Map, path: &Path, state: &[u8]) {
     let _ = std::fs::remove_file(path);
-    Retention::load(map, path, &mut Bytes::new(map)).unwrap().0.finish(0, state).unwrap();
+    Retention::load(map, path, &mut Bytes::new(map)).unwrap().0.save(0, state).unwrap();
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn an_edited_program_keeps_what_still_fits() {
     assert!(machine.state.iter().all(|it| *it == 0));
     // The file is of another form now: it is made anew.
     let (mut retention, _) = Retention::load(&edited, &path, &mut machine).unwrap();
-    retention.finish(0, &[4; 128]).unwrap();
+    retention.save(0, &[4; 128]).unwrap();
     assert_eq!(load(&edited, &path, &mut machine).unwrap().notes, [""; 0]);
 }
 
@@ -181,8 +181,8 @@ fn an_old_file_is_read_and_made_anew() {
     assert_eq!(state[offset_of("total")], 42);
     let (path, mut machine) = (file("old"), Bytes::new(&map()));
     let (mut retention, _) = Retention::load(&map(), &path, &mut machine).unwrap();
-    retention.finish(100, &machine.state).unwrap();
-    assert!(std::fs::read(&path).unwrap().starts_with(b"staunch retained variables 3\n"));
+    retention.save(100, &machine.state).unwrap();
+    assert!(std::fs::read(&path).unwrap().starts_with(b"staunch retained variables 4\n"));
     assert_eq!(load(&map(), &path, &mut machine).unwrap().clock, 100);
     assert_eq!(machine.state[offset_of("total")], 42);
 }
@@ -236,4 +236,29 @@ fn a_file_without_an_end_is_refused() {
     let error = load(&map(), &path, &mut Bytes::new(&map())).unwrap_err();
     assert!(error.to_string().contains("it is longer than 16778240 bytes"), "{error}");
     std::fs::remove_file(&path).unwrap();
+}
+
+/// Whether a run ended by a fault is kept with the values until one ends well, and the values are those of the last
+/// whole scan.
+#[test]
+fn a_fault_is_told_until_a_run_ends_well() {
+    let path = file("faulted");
+    save(&map(), &path, &[1; 128]);
+    let end = |scan: Option<u8>, ending| {
+        let mut machine = Bytes::new(&map());
+        let (mut retention, loaded) = Retention::load(&map(), &path, &mut machine).unwrap();
+        scan.iter().for_each(|it| retention.offer(5, &[*it; 128]));
+        retention.finish(ending).unwrap();
+        (machine.state[offset_of("total")], loaded.notes)
+    };
+    let told = |(number, notes): (u8, Vec<String>), expected| {
+        assert_eq!(number, expected);
+        assert!(notes.len() == 1 && notes[0].contains("p.st:7:1: fault: division by zero"), "{notes:?}");
+    };
+    assert_eq!(end(Some(2), Ending::Fault("p.st:7:1: fault: division by zero")), (1, vec![]));
+    // A fault in the first scan.
+    told(end(None, Ending::Fault("p.st:7:1: fault: division by zero")), 2);
+    told(end(Some(3), Ending::Early), 2);
+    told(end(Some(4), Ending::Well), 3);
+    assert_eq!(end(None, Ending::Well), (4, vec![]));
 }

@@ -2,7 +2,6 @@
 //! the disk nor allocates. It copies the bytes that changed into a box; the writer takes the newest.
 
 use super::keeper::Keeper;
-use super::kept::Kept;
 use super::storage::Storage;
 use staunch_runtime::Time;
 use std::io;
@@ -48,8 +47,6 @@ impl Pace {
 pub(super) struct Writer {
     shared: Arc<Shared>,
     thread: JoinHandle<io::Result<()>>,
-    /// The values as they were handed over last.
-    last: Vec<u8>,
     /// How often values were handed over.
     generation: u64,
 }
@@ -68,6 +65,8 @@ struct Parcel {
     generation: u64,
     clock: Time,
     values: Vec<u8>,
+    /// Why the run ended, or the one before while this one goes on.
+    fault: String,
 }
 
 impl Writer {
@@ -75,43 +74,42 @@ impl Writer {
     pub fn start<S: Storage + 'static>(
         keeper: Keeper<S>,
         pace: Pace,
-        values: Vec<u8>,
+        (values, fault): (&[u8], &str),
         tell: impl Fn(&str) + Send + 'static,
     ) -> io::Result<Self> {
-        let parcel = || Parcel { generation: 0, clock: 0, values: values.clone() };
+        let parcel = || Parcel { generation: 0, clock: 0, values: values.to_owned(), fault: fault.to_owned() };
         let boxes = [parcel(), parcel()].map(Mutex::new);
         let shared = Arc::new(Shared { boxes, idle: AtomicBool::new(false), ends: AtomicBool::new(false) });
         let (taken, desk_shared) = (parcel(), Arc::clone(&shared));
         let mut desk = Desk { shared: desk_shared, keeper, pace, taken, saved: 0, last: None, was_late: false };
         let thread = thread::Builder::new().name("retain".to_owned()).spawn(move || desk.work(&tell))?;
-        Ok(Self { shared, thread, last: values, generation: 0 })
+        Ok(Self { shared, thread, generation: 0 })
     }
 
-    /// Hands the values over if they have changed. It takes as long as comparing and copying does.
-    pub fn offer(&mut self, clock: Time, kept: &Kept, state: &[u8]) {
-        if !kept.copy_changed(state, &mut self.last) {
-            return;
-        }
+    /// Hands values over. It takes as long as copying does.
+    pub fn offer(&mut self, clock: Time, values: &[u8]) {
         self.generation += 1;
         // Who holds a box lets it go without waiting for anything: one of a few tries succeeds.
-        while !self.hand_over(clock) {}
+        while !self.hand_over(clock, values, None) {}
         if self.shared.idle.swap(false, Ordering::AcqRel) {
             self.thread.thread().unpark();
         }
     }
 
-    fn hand_over(&self, clock: Time) -> bool {
+    fn hand_over(&self, clock: Time, values: &[u8], fault: Option<&str>) -> bool {
         let Some(mut parcel) = self.shared.boxes.iter().find_map(free) else { return false };
         (parcel.generation, parcel.clock) = (self.generation, clock);
-        parcel.values.copy_from_slice(&self.last);
+        parcel.values.copy_from_slice(values);
+        if let Some(fault) = fault {
+            fault.clone_into(&mut parcel.fault);
+        }
         true
     }
 
     /// Saves the last values, and the clock also where they are on disk already. Waits for the disk.
-    pub fn finish(mut self, clock: Time, kept: &Kept, state: &[u8]) -> io::Result<()> {
-        kept.copy_changed(state, &mut self.last);
+    pub fn finish(mut self, clock: Time, values: &[u8], fault: &str) -> io::Result<()> {
         self.generation += 1;
-        while !self.hand_over(clock) {}
+        while !self.hand_over(clock, values, Some(fault)) {}
         self.shared.ends.store(true, Ordering::Release);
         self.thread.thread().unpark();
         self.thread.join().unwrap_or_else(|_| Err(io::Error::other("the writer ended early")))
@@ -172,6 +170,7 @@ impl<S: Storage> Desk<S> {
             if parcel.generation > self.taken.generation {
                 (self.taken.generation, self.taken.clock) = (parcel.generation, parcel.clock);
                 self.taken.values.copy_from_slice(&parcel.values);
+                self.taken.fault.clone_from(&parcel.fault);
             }
         }
     }
@@ -179,7 +178,7 @@ impl<S: Storage> Desk<S> {
     /// Says what changes: an error when it comes and when it is over, a slow disk once.
     fn save(&mut self, tell: &dyn Fn(&str)) -> io::Result<()> {
         let began = Instant::now();
-        let result = self.keeper.save(self.taken.clock, &self.taken.values);
+        let result = self.keeper.save(self.taken.clock, &self.taken.values, &self.taken.fault);
         let took = began.elapsed();
         let failed_before = self.last.replace((began, result.is_err())).is_some_and(|it| it.1);
         match &result {

@@ -16,9 +16,9 @@ fn values(number: u8) -> Vec<u8> {
 /// A file in which state 7 was saved after state 6.
 fn file() -> Vec<u8> {
     let layout = layout();
-    let mut file = layout.encode_file(Record { sequence: 6, clock: 60, values: &values(6) });
+    let mut file = layout.encode_file(Record { sequence: 6, clock: 60, values: &values(6), fault: "" });
     let mut slot = Vec::new();
-    layout.encode_slot(Record { sequence: 7, clock: 70, values: &values(7) }, &mut slot);
+    layout.encode_slot(Record { sequence: 7, clock: 70, values: &values(7), fault: "" }, &mut slot);
     let at = layout.offset(Slot::Second);
     file[at..at + slot.len()].copy_from_slice(&slot);
     file
@@ -43,7 +43,7 @@ fn the_later_state_is_taken() {
     assert_eq!(state_of(&file()), Some(7));
     assert_eq!(file().len(), 3 * SECTOR);
     assert!(layout().is_of(&file()));
-    let first = layout().encode_file(Record { sequence: 6, clock: 60, values: &values(6) });
+    let first = layout().encode_file(Record { sequence: 6, clock: 60, values: &values(6), fault: "" });
     assert_eq!(state_of(&first), Some(6));
     assert!(!recover(&first).unwrap().found.unwrap().other_is_broken);
 }
@@ -51,7 +51,7 @@ fn the_later_state_is_taken() {
 #[test]
 fn of_every_prefix_a_whole_state_is_taken_or_none() {
     let (file, layout) = (file(), layout());
-    let ends = Slot::BOTH.map(|it| layout.offset(it) + SLOT_HEAD + 704);
+    let ends = Slot::BOTH.map(|it| layout.offset(it) + SLOT_HEAD + 704 + FAULT);
     for length in 0..file.len() {
         let expected = if length >= ends[1] { Some(7) } else { (length >= ends[0]).then_some(6) };
         assert_eq!(state_of(&file[..length]), expected, "{length}");
@@ -61,7 +61,7 @@ fn of_every_prefix_a_whole_state_is_taken_or_none() {
 #[test]
 fn of_every_flipped_byte_a_whole_state_is_taken_or_none() {
     let (file, layout) = (file(), layout());
-    let [first, second] = Slot::BOTH.map(|it| layout.offset(it)..layout.offset(it) + SLOT_HEAD + 704);
+    let [first, second] = Slot::BOTH.map(|it| layout.offset(it)..layout.offset(it) + SLOT_HEAD + 704 + FAULT);
     for at in 0..file.len() {
         for flip in [0x01, 0x20, 0x80, 0xFF] {
             let mut damaged = file.clone();
@@ -84,7 +84,7 @@ fn of_every_flipped_byte_a_whole_state_is_taken_or_none() {
 fn of_every_torn_write_the_state_before_is_taken() {
     let (file, layout) = (file(), layout());
     let mut slot = Vec::new();
-    layout.encode_slot(Record { sequence: 8, clock: 80, values: &values(8) }, &mut slot);
+    layout.encode_slot(Record { sequence: 8, clock: 80, values: &values(8), fault: "" }, &mut slot);
     let at = layout.offset(Slot::First);
     for written in 0..=slot.len() {
         let mut torn = file.clone();
@@ -110,7 +110,7 @@ fn a_slot_of_another_file_is_none_of_this() {
     let mut file = file();
     let other = Layout::new("Main", [("main.count", "INT", 2), ("main.name", "BYTES[702]", 702)].into_iter());
     let mut slot = Vec::new();
-    other.encode_slot(Record { sequence: 9, clock: 90, values: &values(9) }, &mut slot);
+    other.encode_slot(Record { sequence: 9, clock: 90, values: &values(9), fault: "" }, &mut slot);
     let at = layout().offset(Slot::First);
     file[at..at + slot.len()].copy_from_slice(&slot);
     assert_eq!(state_of(&file), Some(7));
@@ -135,7 +135,7 @@ fn a_head_that_promises_too_much_is_refused() {
 #[test]
 fn nothing_to_keep_is_kept_too() {
     let layout = Layout::new("Main", std::iter::empty());
-    let file = layout.encode_file(Record { sequence: 1, clock: 5, values: &[] });
+    let file = layout.encode_file(Record { sequence: 1, clock: 5, values: &[], fault: "" });
     let content = recover(&file).unwrap();
     assert_eq!((content.clock, content.variables.len()), (5, 0));
 }
@@ -144,6 +144,28 @@ fn nothing_to_keep_is_kept_too() {
 fn foreign_files_are_told_from_damaged_ones() {
     assert_eq!(recover(b""), Err(Refusal::Foreign));
     assert_eq!(recover(&[0xFF; 9000]), Err(Refusal::Foreign));
-    let newer = [TITLE.as_bytes(), b"4\n"].concat();
-    assert_eq!(recover(&newer).unwrap_err().text(), "its format is version 4, and this Staunch reads version 3 and 2");
+    let newer = [TITLE.as_bytes(), b"5\n"].concat();
+    assert_eq!(recover(&newer).unwrap_err().text(), "its format is version 5, and this Staunch reads versions 2 to 4");
+}
+
+#[test]
+fn a_fault_is_kept_and_a_long_one_by_its_end() {
+    let layout = layout();
+    let kept = |fault: &str| {
+        let file = layout.encode_file(Record { sequence: 1, clock: 0, values: &values(1), fault });
+        recover(&file).unwrap().found.unwrap().fault
+    };
+    assert_eq!(kept("p.st:7:10: fault: division by zero"), "p.st:7:10: fault: division by zero");
+    let long = "ä".repeat(FAULT);
+    assert_eq!(kept(&format!("{long}:7:10")), format!("{}:7:10", "ä".repeat((FAULT - 5) / 2)));
+}
+
+/// What an older Staunch wrote.
+#[test]
+fn a_file_of_version_3_is_read_and_made_anew() {
+    let old = Layout::of_version(WITHOUT_FAULT, "Main", VARIABLES.into_iter());
+    let file = old.encode_file(Record { sequence: 6, clock: 60, values: &values(6), fault: "not kept" });
+    assert_eq!(state_of(&file), Some(6));
+    assert_eq!(recover(&file).unwrap().found.unwrap().fault, "");
+    assert!(!layout().is_of(&file));
 }

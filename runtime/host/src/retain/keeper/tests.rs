@@ -15,6 +15,11 @@ fn values(number: u32) -> Vec<u8> {
     number.to_le_bytes().repeat(SIZE / 4)
 }
 
+/// What the state says of a fault, in every other one.
+fn fault(number: u32) -> String {
+    if number % 2 == 0 { String::new() } else { format!("p.st:{number}:1: fault: division by zero") }
+}
+
 /// What a start finds: the number of the state, 0 without a file, and what the keeper is told of it.
 fn start(file: Option<&[u8]>) -> (u32, Option<(Time, Found)>) {
     let Some(file) = file else { return (0, None) };
@@ -23,6 +28,7 @@ fn start(file: Option<&[u8]>) -> (u32, Option<(Time, Found)>) {
     let number = u32::from_le_bytes(*found.values.first_chunk().unwrap());
     assert_eq!(found.values, values(number), "a state is whole");
     assert_eq!(content.clock, i64::from(number));
+    assert!(found.fault.is_empty() || found.fault == fault(number), "{}", found.fault);
     assert!(layout().is_of(file));
     (number, Some((content.clock, found)))
 }
@@ -50,7 +56,7 @@ fn live(seed: u64) -> usize {
             let mut keeper = Keeper::new(disk.clone(), layout(), known);
             for _ in 0..random.below(12) {
                 number += 1;
-                if keeper.save(number.into(), &values(number)).is_ok() {
+                if keeper.save(number.into(), &values(number), &fault(number)).is_ok() {
                     saved = number;
                 }
             }
@@ -84,15 +90,15 @@ fn whenever_the_power_goes_the_last_state_is_found() {
 fn a_disk_that_is_full_is_still_written_inside() {
     let disk = Faulty::new(1, Faults::default(), None);
     let mut keeper = Keeper::new(disk.clone(), layout(), None);
-    keeper.save(1, &values(1)).unwrap();
+    keeper.save(1, &values(1), "").unwrap();
     disk.set(Faults { room: Some(0), ..Faults::default() });
-    keeper.save(2, &values(2)).unwrap();
+    keeper.save(2, &values(2), "").unwrap();
     // A start finds the file, and goes on inside of it.
     let (_, found) = start(disk.cached().as_deref());
-    Keeper::new(disk.clone(), layout(), found).save(3, &values(3)).unwrap();
+    Keeper::new(disk.clone(), layout(), found).save(3, &values(3), "").unwrap();
     assert_eq!(start(disk.after_power_cut().as_deref()).0, 3);
     let full = Faulty::new(2, Faults { room: Some(100), ..Faults::default() }, None);
-    let error = Keeper::new(full.clone(), layout(), None).save(1, &values(1)).unwrap_err();
+    let error = Keeper::new(full.clone(), layout(), None).save(1, &values(1), "").unwrap_err();
     assert_eq!(error.kind(), io::ErrorKind::StorageFull);
     assert_eq!(full.cached(), None);
 }
@@ -101,23 +107,23 @@ fn a_disk_that_is_full_is_still_written_inside() {
 fn a_file_that_cannot_be_written_inside_is_made_anew() {
     let disk = Faulty::new(1, Faults::default(), None);
     let mut keeper = Keeper::new(disk.clone(), layout(), None);
-    keeper.save(1, &values(1)).unwrap();
+    keeper.save(1, &values(1), "").unwrap();
     keeper.layout = Layout::new("Main", [("main.x", "ANOTHER", SIZE)].into_iter());
     keeper.good = None;
-    keeper.save(2, &values(2)).unwrap();
+    keeper.save(2, &values(2), "").unwrap();
     assert!(keeper.layout.is_of(&disk.cached().unwrap()));
 }
 
 #[test]
 fn a_file_with_the_last_of_all_sequence_numbers_is_made_anew() {
     for sequence in [u64::MAX, u64::MAX - 1, u64::MAX / 2] {
-        let old = layout().encode_file(Record { sequence, clock: 1, values: &values(1) });
+        let old = layout().encode_file(Record { sequence, clock: 1, values: &values(1), fault: "" });
         let (number, found) = start(Some(&old));
         assert_eq!(number, 1);
         let disk = Faulty::new(1, Faults::default(), None);
         let mut keeper = Keeper::new(disk.clone(), layout(), found);
         for number in 2..5 {
-            keeper.save(i64::from(number), &values(number)).unwrap();
+            keeper.save(i64::from(number), &values(number), &fault(number)).unwrap();
             assert_eq!(start(disk.after_power_cut().as_deref()).0, number, "after {sequence}");
         }
     }

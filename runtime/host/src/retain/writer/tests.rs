@@ -1,6 +1,7 @@
 //! Writing while power may fail: the last complete state is found, or the one before.
 
 use super::super::format::{Layout, recover};
+use super::super::kept::Kept;
 use super::super::storage::Which;
 use super::super::tests::faulty::{Faults, Faulty};
 use super::*;
@@ -13,6 +14,11 @@ const REGIONS: [std::ops::Range<usize>; 2] = [0..40, 56..80];
 
 fn keeper<S: Storage>(storage: S) -> Keeper<S> {
     Keeper::new(storage, Layout::new("Main", [("main.x", "ARRAY", SIZE)].into_iter()), None)
+}
+
+/// What is kept of a state in which all bytes are alike.
+const fn all(number: u8) -> [u8; SIZE] {
+    [number; SIZE]
 }
 
 fn soon() -> Pace {
@@ -51,40 +57,49 @@ fn a_write_starts_half_the_time_after_the_one_before() {
 #[test]
 fn a_change_is_saved_and_no_change_is_not() {
     let disk = Faulty::new(1, Faults::default(), None);
-    let mut writer = Writer::start(keeper(disk.clone()), soon(), vec![0; SIZE], |_| {}).unwrap();
+    let kept = Kept::whole(&REGIONS);
+    let mut whole = vec![0; SIZE];
+    let mut writer = Writer::start(keeper(disk.clone()), soon(), (&whole, ""), |_| {}).unwrap();
+    let mut offer = |clock, state: &[u8]| {
+        if kept.copy_changed(state, &mut whole) {
+            writer.offer(clock, &whole);
+        }
+    };
     let mut state = [0; STATE];
-    writer.offer(1, &Kept::whole(&REGIONS), &state);
+    offer(1, &state);
     // What is not retained is no change.
     state[50] = 1;
-    writer.offer(2, &Kept::whole(&REGIONS), &state);
+    offer(2, &state);
     state[0] = 1;
-    writer.offer(3, &Kept::whole(&REGIONS), &state);
+    offer(3, &state);
     until(|| on_disk(&disk) == Some(1));
     let writes = disk.writes();
     for clock in 4..100 {
-        writer.offer(clock, &Kept::whole(&REGIONS), &state);
+        offer(clock, &state);
     }
     thread::sleep(Duration::from_millis(20));
     assert_eq!(disk.writes(), writes);
     state[79] = 9;
-    writer.finish(100, &Kept::whole(&REGIONS), &state).unwrap();
+    writer.finish(100, &kept.of(&state), "p.st:1:1: fault").unwrap();
     let content = recover(&disk.cached().unwrap()).unwrap();
     assert_eq!(content.clock, 100);
-    assert_eq!(content.found.unwrap().values, [&state[..40], &state[56..]].concat());
+    let found = content.found.unwrap();
+    assert_eq!(found.values, [&state[..40], &state[56..]].concat());
+    assert_eq!(found.fault, "p.st:1:1: fault");
 }
 
 #[test]
 fn the_newest_of_many_changes_is_saved() {
     let disk = Faulty::new(1, Faults::default(), None);
     let hour = Pace::within(Duration::from_secs(3600));
-    let mut writer = Writer::start(keeper(disk.clone()), hour, vec![0; SIZE], |_| {}).unwrap();
+    let mut writer = Writer::start(keeper(disk.clone()), hour, (&[0; SIZE], ""), |_| {}).unwrap();
     for number in 1..=200 {
-        writer.offer(1, &Kept::whole(&REGIONS), &[number; STATE]);
+        writer.offer(1, &all(number));
     }
     // The first at once, the rest not before the half hour is over; the end waits for none of that.
     until(|| on_disk(&disk).is_some());
     assert!(disk.writes() <= 2);
-    writer.finish(1, &Kept::whole(&REGIONS), &[201; STATE]).unwrap();
+    writer.finish(1, &all(201), "").unwrap();
     assert_eq!(on_disk(&disk), Some(201));
 }
 
@@ -122,15 +137,15 @@ impl Storage for Stuck {
 fn the_scan_does_not_wait_for_the_disk() {
     let disk = Faulty::new(1, Faults::default(), None);
     let (go_on, wait): (Sender<()>, _) = channel();
-    let mut writer = Writer::start(keeper(Stuck(disk.clone(), wait)), soon(), vec![0; SIZE], |_| {}).unwrap();
+    let mut writer = Writer::start(keeper(Stuck(disk.clone(), wait)), soon(), (&[0; SIZE], ""), |_| {}).unwrap();
     // The disk hangs in its first sync; a scan that waited for it would never end.
     for number in 1..=100 {
-        writer.offer(1, &Kept::whole(&REGIONS), &[number; STATE]);
+        writer.offer(1, &all(number));
     }
     assert_eq!(on_disk(&disk), None);
     drop(go_on);
     until(|| on_disk(&disk) == Some(100));
-    writer.finish(1, &Kept::whole(&REGIONS), &[100; STATE]).unwrap();
+    writer.finish(1, &all(100), "").unwrap();
 }
 
 #[test]
@@ -138,8 +153,8 @@ fn a_disk_that_fails_is_tried_again_and_told_once() {
     let disk = Faulty::new(1, Faults { errors: 100, ..Faults::default() }, None);
     let (tell, told) = channel();
     let tell = move |text: &str| drop(tell.send(text.to_owned()));
-    let mut writer = Writer::start(keeper(disk.clone()), soon(), vec![0; SIZE], tell).unwrap();
-    writer.offer(1, &Kept::whole(&REGIONS), &[1; STATE]);
+    let mut writer = Writer::start(keeper(disk.clone()), soon(), (&[0; SIZE], ""), tell).unwrap();
+    writer.offer(1, &all(1));
     let first = told.recv().unwrap();
     assert!(first.starts_with("retained variables cannot be saved: a bad sector;"), "{first}");
     disk.set(Faults::default());
@@ -147,7 +162,7 @@ fn a_disk_that_fails_is_tried_again_and_told_once() {
     assert_eq!(told.recv().unwrap(), "retained variables are saved again");
     assert_eq!(on_disk(&disk), Some(1));
     disk.set(Faults { errors: 100, ..Faults::default() });
-    assert!(writer.finish(1, &Kept::whole(&REGIONS), &[2; STATE]).is_err());
+    assert!(writer.finish(1, &all(2), "").is_err());
     assert_eq!(on_disk(&disk), Some(1));
 }
 
@@ -155,9 +170,15 @@ fn a_disk_that_fails_is_tried_again_and_told_once() {
 fn the_scan_does_not_allocate() {
     let disk = Faulty::new(1, Faults::default(), None);
     let kept = Kept::whole(&REGIONS);
-    let mut writer = Writer::start(keeper(disk.clone()), soon(), vec![0; SIZE], |_| {}).unwrap();
-    let offers = || (1..=200).for_each(|number| writer.offer(1, &kept, &[number; STATE]));
+    let mut whole = vec![0; SIZE];
+    let mut writer = Writer::start(keeper(disk.clone()), soon(), (&whole, ""), |_| {}).unwrap();
+    let offers = || {
+        (1..=200).for_each(|number| {
+            assert!(kept.copy_changed(&[number; STATE], &mut whole));
+            writer.offer(1, &whole);
+        });
+    };
     assert_eq!(allocations(offers), 0);
     assert_eq!(allocations(|| drop(vec![0; SIZE])), 1);
-    writer.finish(1, &kept, &[1; STATE]).unwrap();
+    writer.finish(1, &all(1), "").unwrap();
 }

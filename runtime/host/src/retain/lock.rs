@@ -1,0 +1,45 @@
+//! One process at a time writes a file of retained variables. The lock is a file of its own next to it, as the
+//! file itself is replaced. The system lets go of it when the process ends, in whatever way.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io;
+use std::path::Path;
+
+/// The lock of a file, as long as it is held. `None` where the folder takes no new file, or the system has no locks.
+pub(super) fn take(path: &Path) -> io::Result<Option<File>> {
+    let mut name = OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".lock");
+    let opened = File::options().create(true).truncate(false).write(true).open(path.with_file_name(name));
+    match opened {
+        Ok(file) => lock(&file).map(|()| Some(file)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(error),
+        Err(_) => Ok(None),
+    }
+}
+
+#[cfg(unix)]
+fn lock(file: &File) -> io::Result<()> {
+    use std::os::fd::AsRawFd;
+    const EXCLUSIVE: i32 = 2;
+    const AT_ONCE: i32 = 4;
+    unsafe extern "C" {
+        fn flock(descriptor: i32, operation: i32) -> i32;
+    }
+    // SAFETY: it takes any numbers; the descriptor is open.
+    let locked = unsafe { flock(file.as_raw_fd(), EXCLUSIVE | AT_ONCE) };
+    match (locked, io::Error::last_os_error()) {
+        (0, _) => Ok(()),
+        (_, error) if error.kind() == io::ErrorKind::WouldBlock => Err(io::Error::other(
+            "another process keeps its retained variables there: end it, or give this one a file of its own",
+        )),
+        // Some network file systems have no locks.
+        _ => Ok(()),
+    }
+}
+
+#[cfg(not(unix))]
+fn lock(_: &File) -> io::Result<()> {
+    Ok(())
+}
