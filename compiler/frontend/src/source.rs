@@ -122,7 +122,17 @@ impl Source {
             core::iter::once(0).chain(starts.map(|(at, _)| u32::try_from(at + 1).unwrap_or(u32::MAX))).collect();
         let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
         let (encoding, line) = (Encoding::default(), Hint::default());
-        Self { path: path.into(), text, lines, line, characters, encoding, origin: None, library: None, is_bundled: false }
+        Self {
+            path: path.into(),
+            text,
+            lines,
+            line,
+            characters,
+            encoding,
+            origin: None,
+            library: None,
+            is_bundled: false,
+        }
     }
 
     /// The Structured Text in a file, also in one of another system's.

@@ -75,7 +75,9 @@ impl LiteralErrorKind {
             Self::UnknownUnit => "the units of a duration are d, h, m, s, ms, us and ns",
             Self::UnitOrder => "a unit is after a shorter or the same unit",
             Self::InnerFraction { .. } => "only the last unit of a duration has a fraction",
-            Self::DurationTooLong => "a duration is at most 106751d 23h 47m 16s 854ms 775us 807ns: it counts nanoseconds in 64 bits with a sign",
+            Self::DurationTooLong => {
+                "a duration is at most 106751d 23h 47m 16s 854ms 775us 807ns: it counts nanoseconds in 64 bits with a sign"
+            }
             Self::DateForm => "a date is year, month and day, as in `2024-02-29`",
             Self::TimeOfDayForm => "a time of day is hour, minute and second, as in `23:59:59.5`",
             Self::DateAndTimeForm => "a DT is a date and a time of day, as in `2024-02-29-23:59:59.5`",

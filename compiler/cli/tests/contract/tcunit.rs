@@ -132,7 +132,10 @@ END_PROGRAM
     folder.write("t.st", source);
     let ran = folder.staunch("test t.st");
     assert_eq!(ran.code, 1, "{}", ran.err);
-    has(&ran.out, &["FAILED  T.found", "FAILED  T.expected", "FAILED  T.element", "FAILED  T.far", "ok      T.the same"]);
+    has(
+        &ran.out,
+        &["FAILED  T.found", "FAILED  T.expected", "FAILED  T.element", "FAILED  T.far", "ok      T.the same"],
+    );
 }
 
 #[test]

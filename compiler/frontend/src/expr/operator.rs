@@ -316,7 +316,8 @@ impl<'s> Checker<'_, 's> {
         const REAL: Type = Type::Elementary(Elementary::Real);
         let op_span = sides.op_span;
         let mixes = self.decl.dialect(sides.span).mixes_bits_and_integers();
-        let is_number = |it: Elementary| it.is_real() || it.is_integer() || mixes && it.is_bits() && it != Elementary::Bool;
+        let is_number =
+            |it: Elementary| it.is_real() || it.is_integer() || mixes && it.is_bits() && it != Elementary::Bool;
         let numeric = |operand: &Operand| match operand.ty() {
             Some(Type::Elementary(it)) => is_number(it),
             Some(_) => false,

@@ -190,7 +190,8 @@ impl<'s> Names<'s> {
         while let Some(region) = regions.next() {
             let mut spaces = self.spaces_to(region.space, regions.peek().map(|it| it.space));
             let of_standard = || self.library(site.dialect, name, sense);
-            if site.is_bundled && region.space == SpaceId::ROOT
+            if site.is_bundled
+                && region.space == SpaceId::ROOT
                 && let Some(meaning) = of_standard()
             {
                 return Found::One(meaning);

@@ -209,9 +209,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             assignment(input, target)?
         }
         Kind::Colon => return split_assign(input, target),
-        Kind::PlusEqual | Kind::MinusEqual | Kind::StarEqual | Kind::SlashEqual => {
-            combined(input, target)?
-        }
+        Kind::PlusEqual | Kind::MinusEqual | Kind::StarEqual | Kind::SlashEqual => combined(input, target)?,
         Kind::Attempt => {
             input.take();
             let value = expression(input)?;
