@@ -32,10 +32,14 @@ impl Unit {
         self.use_ == Use::Function
     }
 
-    /// Whether what it declares is one thing by its own name.
+    /// Whether what it declares is one thing by its own name. A data type is shared: what is handed to a block is of it, so
+    /// the program's takes its place.
     fn has_own_name(&self) -> bool {
-        let is_alone = matches!(self.use_, Use::Type | Use::Function | Use::Value);
-        is_alone && self.text != LINE_END
+        match self.use_ {
+            Use::Function | Use::Value => true,
+            Use::Type => self.text.contains("FUNCTION_BLOCK"),
+            Use::Global | Use::Space | Use::Open => false,
+        }
     }
 
     pub fn is_value(&self) -> bool {
