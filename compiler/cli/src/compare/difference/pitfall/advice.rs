@@ -279,7 +279,7 @@ impl Pitfall {
         let text = texts.join(" ");
         match to {
             Cscape | Codesys => text.replace("R := ", "RESET := "),
-            Iec | Openplc | Logix | Dialect::Siemens => text,
+            Iec | Openplc | Dialect::Openplc4 | Logix | Dialect::Siemens => text,
         }
     }
 }
