@@ -69,6 +69,7 @@ impl<'j> Table<'j> {
         let id = text(&self.json["id"]);
         let dialect = if self.family == Family::Logix { Dialect::Logix } else { Dialect::Iec };
         let ctu_stop_at_pv = self.json["setup"]["stop"] == Json::Bool(true);
+        let openplc4_cd_rises = self.json["setup"]["cd_edge"] == "rising";
         let source = match self.block.name {
             "COUNTER" => self.instructions_source(),
             "FBD_COUNTER" => {
@@ -81,7 +82,7 @@ impl<'j> Table<'j> {
             id,
             title: text(&self.json["title"]),
             source,
-            options: Options { dialect, ctu_stop_at_pv, ..Options::default() },
+            options: Options { dialect, ctu_stop_at_pv, openplc4_cd_rises, ..Options::default() },
             scans: self.scans(),
         }
     }
@@ -237,6 +238,7 @@ fn family_and_name(table: &Json) -> (Family, String) {
         (b'B', name) => (Family::Cscape, name.to_owned()),
         (b'C', name) => (Family::Codesys, name.to_owned()),
         (b'E', name) => (Family::Openplc, name.to_owned()),
+        (b'F', name) => (Family::Openplc4, name.to_owned()),
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER".to_owned()),
         (b'D', _) => (Family::Logix, "COUNTER".to_owned()),
         (other, _) => panic!("no family {other}"),

@@ -6,8 +6,8 @@ use staunch_tests::folder;
 use staunch_tests::scan::{Row, Table};
 use staunch_tests::vector::{self, Scan, Vector};
 
-const VECTORS: usize = 122;
-const ROWS: usize = 651;
+const VECTORS: usize = 167;
+const ROWS: usize = 943;
 
 #[test]
 fn every_counter_vector_holds_on_every_executor() {

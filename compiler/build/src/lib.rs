@@ -50,6 +50,7 @@ pub struct Build {
     libraries: Vec<PathBuf>,
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
+    openplc4_cd_rises: Option<bool>,
     implicit_narrowing: Option<bool>,
     levels: Vec<(Level, String)>,
 }
@@ -89,6 +90,13 @@ impl Build {
     #[must_use]
     pub fn dialect(mut self, dialect: Dialect) -> Self {
         self.dialect = Some(dialect);
+        self
+    }
+
+    /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge, as `openplc4-cd-edge = "rising"` says.
+    #[must_use]
+    pub fn openplc4_cd_rises(mut self, rises: bool) -> Self {
+        self.openplc4_cd_rises = Some(rises);
         self
     }
 
@@ -223,6 +231,7 @@ impl Build {
         let options = staunch_frontend::Options {
             dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
+            openplc4_cd_rises: self.openplc4_cd_rises.unwrap_or(project.openplc4_cd_rises),
             implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
             ..Default::default()
         };

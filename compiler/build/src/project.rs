@@ -16,6 +16,8 @@ pub struct Project {
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
     pub ctu_stop_at_pv: bool,
+    /// `openplc4-cd-edge = "rising"`.
+    pub openplc4_cd_rises: bool,
     pub implicit_narrowing: bool,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
@@ -133,6 +135,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "cycle" => project.cycle = Some(text(key, value)?),
         "loop-budget" => project.loop_budget = Some(number(key, value)?),
         "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
+        "openplc4-cd-edge" => project.openplc4_cd_rises = choice(key, value, &["falling", "rising"])? == "rising",
         "implicit-narrowing" => project.implicit_narrowing = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,
         "deny" => project.deny = texts(key, value)?,
@@ -143,7 +146,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
+                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, openplc4-cd-edge, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }

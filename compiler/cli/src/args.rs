@@ -48,7 +48,7 @@ pub enum Command {
 #[derive(Clone, Debug, Args)]
 pub struct Common {
     /// Whose counters a bare name means, and what is allowed beyond the standard
-    #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|twincat|openplc|logix|siemens")]
+    #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|twincat|openplc|openplc4|logix|siemens")]
     pub dialect: Option<Dialect>,
     /// How diagnostics are written
     #[arg(long, global = true, value_enum)]
@@ -438,8 +438,9 @@ fn named_dialect(name: &str) -> Result<Named, String> {
 }
 
 fn dialect(name: &str) -> Result<Dialect, String> {
-    Dialect::named(name)
-        .ok_or_else(|| "the dialects are iec, cscape, codesys, twincat, openplc, logix and siemens".to_owned())
+    Dialect::named(name).ok_or_else(|| {
+        "the dialects are iec, cscape, codesys, twincat, openplc, openplc4, logix and siemens".to_owned()
+    })
 }
 
 /// The arguments of this process.

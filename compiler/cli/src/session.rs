@@ -381,6 +381,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
     Ok(Options {
         dialect,
         ctu_stop_at_pv: project.ctu_stop_at_pv,
+        openplc4_cd_rises: project.openplc4_cd_rises,
         implicit_narrowing: project.implicit_narrowing,
         moved_from: None,
         tests: false,

@@ -20,8 +20,10 @@ pub enum Dialect {
     Cscape,
     /// CODESYS (and TwinCAT).
     Codesys,
-    /// OpenPLC v3, OpenPLC Editor and Beremiz: as `Iec`, with MATIEC's counters.
+    /// OpenPLC v3, OpenPLC Editor before v4.1, and Beremiz: as `Iec`, with MATIEC's counters.
     Openplc,
+    /// OpenPLC from v4.1: as `Iec`, with the counters and timers of STruC++.
+    Openplc4,
     /// Rockwell Logix 5000.
     Logix,
     /// SCL of Siemens' S7-1200 and S7-1500: as `Iec`, without counters by their bare names.
@@ -29,7 +31,8 @@ pub enum Dialect {
 }
 
 impl Dialect {
-    pub const ALL: [Self; 6] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix, Self::Siemens];
+    pub const ALL: [Self; 7] =
+        [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Openplc4, Self::Logix, Self::Siemens];
 
     pub const fn name(self) -> &'static str {
         match self {
@@ -37,6 +40,7 @@ impl Dialect {
             Self::Cscape => "cscape",
             Self::Codesys => "codesys",
             Self::Openplc => "openplc",
+            Self::Openplc4 => "openplc4",
             Self::Logix => "logix",
             Self::Siemens => "siemens",
         }
@@ -59,7 +63,7 @@ impl Dialect {
     const fn alias(self) -> Option<&'static str> {
         match self {
             Self::Codesys => Some("twincat"),
-            Self::Iec | Self::Cscape | Self::Openplc | Self::Logix | Self::Siemens => None,
+            Self::Iec | Self::Cscape | Self::Openplc | Self::Openplc4 | Self::Logix | Self::Siemens => None,
         }
     }
 
@@ -74,6 +78,7 @@ impl Dialect {
             Self::Cscape => Family::Cscape,
             Self::Codesys => Family::Codesys,
             Self::Openplc => Family::Openplc,
+            Self::Openplc4 => Family::Openplc4,
             Self::Logix => Family::Logix,
         }
     }
@@ -137,7 +142,7 @@ impl Dialect {
     /// The arguments of a call without names are in the order in which the parameters are declared, outputs among them.
     /// (IEC 61131-3, 6.6.1.4.2, "non-formal call")
     pub const fn binds_outputs_in_order(self) -> bool {
-        matches!(self, Self::Iec | Self::Cscape | Self::Openplc)
+        matches!(self, Self::Iec | Self::Cscape | Self::Openplc | Self::Openplc4)
     }
 
     /// `JMP label`, and GOTO of SCL, which is read as that.
@@ -187,7 +192,7 @@ impl Dialect {
 
     /// The standard's own habits, where a vendor has none.
     pub const fn is_standard(self) -> bool {
-        matches!(self, Self::Iec | Self::Openplc | Self::Siemens)
+        matches!(self, Self::Iec | Self::Openplc | Self::Openplc4 | Self::Siemens)
     }
 
     /// Bit strings count as unsigned integers, and same-size sign changes are implicit.
@@ -323,6 +328,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// Each size of address has registers of its own, so that `%IX0.0` and `%IW0` are two.
+    pub const fn has_registers(self) -> bool {
+        matches!(self, Self::Openplc | Self::Openplc4)
+    }
+
     /// Nothing is assigned at an address of inputs, `%I`.
     pub const fn protects_inputs(self) -> bool {
         matches!(self, Self::Codesys)
@@ -401,12 +411,12 @@ impl Dialect {
 
     /// `ADD_INT` is ADD of INTs, as in the standard's tables.
     pub const fn has_typed_functions(self) -> bool {
-        matches!(self, Self::Iec | Self::Openplc)
+        matches!(self, Self::Iec | Self::Openplc | Self::Openplc4)
     }
 
     /// A PROGRAM declares global variables, as in the standard's tables.
     pub const fn has_globals_of_programs(self) -> bool {
-        matches!(self, Self::Iec | Self::Openplc)
+        matches!(self, Self::Iec | Self::Openplc | Self::Openplc4)
     }
 
     /// Assigning a FOR counter in its loop is a lint, not an error.

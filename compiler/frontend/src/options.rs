@@ -11,6 +11,8 @@ pub struct Options {
     pub dialect: Dialect,
     /// CODESYS `CTU` stops at its preset, as some of its documents say.
     pub ctu_stop_at_pv: bool,
+    /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
+    pub openplc4_cd_rises: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
     pub implicit_narrowing: bool,
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
@@ -30,6 +32,7 @@ impl Options {
     pub fn is_on(&self, option: BlockOption) -> bool {
         match option {
             BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
+            BlockOption::CdRises => self.openplc4_cd_rises,
         }
     }
 
@@ -38,6 +41,7 @@ impl Options {
     pub fn with(self, option: BlockOption, is_on: bool) -> Self {
         match option {
             BlockOption::CtuStopAtPv => Self { ctu_stop_at_pv: is_on, ..self },
+            BlockOption::CdRises => Self { openplc4_cd_rises: is_on, ..self },
         }
     }
 }
@@ -55,12 +59,20 @@ pub struct OpenOption {
 }
 
 /// All of them, one row each.
-pub const OPEN_OPTIONS: &[OpenOption] = &[OpenOption {
-    option: BlockOption::CtuStopAtPv,
-    name: "ctu-stop-at-pv",
-    question: "The documents of CODESYS and TwinCAT disagree on whether CTU and LCTU stop at PV.",
-    settings: ["false", "true"],
-}];
+pub const OPEN_OPTIONS: &[OpenOption] = &[
+    OpenOption {
+        option: BlockOption::CtuStopAtPv,
+        name: "ctu-stop-at-pv",
+        question: "The documents of CODESYS and TwinCAT disagree on whether CTU and LCTU stop at PV.",
+        settings: ["false", "true"],
+    },
+    OpenOption {
+        option: BlockOption::CdRises,
+        name: "openplc4-cd-edge",
+        question: "OpenPLC Editor counts CD on its falling edge through 4.2.11; a later version may count the rising edge.",
+        settings: ["falling", "rising"],
+    },
+];
 
 impl OpenOption {
     /// Whether the option decides what a block does: by its name, or because it stands for that block.

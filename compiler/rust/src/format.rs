@@ -415,6 +415,7 @@ fn is_module(name: &str) -> bool {
             | "cscape"
             | "codesys"
             | "openplc"
+            | "openplc4"
             | "logix"
     )
 }

@@ -117,6 +117,8 @@ pub struct Facts {
     pub kept: Option<KeptCount>,
     /// It counts in every call whose input is TRUE, instead of on edges.
     pub counts_levels: bool,
+    /// It counts down on the falling edge.
+    pub counts_falls: bool,
     /// It counts up only below its preset, and down only above 0.
     pub stops: bool,
     /// A system that has not this block, and what it has in its place.
@@ -130,6 +132,7 @@ impl Facts {
         option: None,
         kept: None,
         counts_levels: false,
+        counts_falls: false,
         stops: false,
         instead: None,
     };
@@ -147,6 +150,8 @@ pub struct Replacement {
 pub enum BlockOption {
     /// CODESYS: `CTU` stops at its preset, as some of its documents say.
     CtuStopAtPv,
+    /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
+    CdRises,
 }
 
 /// A counter with one pin more, for the variable that keeps its count over a restart.

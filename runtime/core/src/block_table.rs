@@ -4,7 +4,7 @@ use crate::block::{renamed, retyped};
 use crate::elementary::keyword;
 use crate::{
     Block, BlockInfo, BlockOption, Elementary, Facts, Family, Instruction, KeptCount, Pin, Prescan, Replacement,
-    Retention, codesys, cscape, iec, logix, openplc,
+    Retention, codesys, cscape, iec, logix, openplc, openplc4,
 };
 
 /// Every standard function block, one row each.
@@ -103,6 +103,41 @@ macro_rules! for_each_block {
             Openplc "CTD_ULINT" openplc::Ctd<u64> {} #[stops] { plain "" call staunch_openplc_ctd_ulint; }
             Openplc "CTUD_ULINT" openplc::Ctud<u64> {} #[stops] { plain "" call staunch_openplc_ctud_ulint; }
             Openplc "F_TRIG" openplc::FTrig {} #[in Logix "OSFI with an FBD_ONESHOT"] { plain "" call staunch_openplc_f_trig; }
+
+            Openplc4 "CTU" openplc4::Ctu<i16> {} #[stops] { plain "" call staunch_openplc4_ctu; }
+            Openplc4 "CTD" openplc4::Ctd<i16> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd; }
+            Openplc4 "CTUD" openplc4::Ctud<i16> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctud; }
+            Openplc4 "CTU_INT" openplc4::Ctu<i16> {} #[stops] { plain "" call staunch_openplc4_ctu_int; }
+            Openplc4 "CTD_INT" openplc4::Ctd<i16> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd_int; }
+            Openplc4 "CTUD_INT" openplc4::Ctud<i16> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctud_int; }
+            Openplc4 "CTU_DINT" openplc4::Ctu<i32> {} #[stops] { plain "" call staunch_openplc4_ctu_dint; }
+            Openplc4 "CTD_DINT" openplc4::Ctd<i32> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd_dint; }
+            Openplc4 "CTUD_DINT" openplc4::Ctud<i32> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctud_dint; }
+            Openplc4 "CTU_LINT" openplc4::Ctu<i64> {} #[stops] { plain "" call staunch_openplc4_ctu_lint; }
+            Openplc4 "CTD_LINT" openplc4::Ctd<i64> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd_lint; }
+            Openplc4 "CTUD_LINT" openplc4::Ctud<i64> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctud_lint; }
+            Openplc4 "CTU_UDINT" openplc4::Ctu<u32> {} #[stops] { plain "" call staunch_openplc4_ctu_udint; }
+            Openplc4 "CTD_UDINT" openplc4::Ctd<u32> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd_udint; }
+            Openplc4 "CTUD_UDINT" openplc4::Ctud<u32> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctud_udint; }
+            Openplc4 "CTU_ULINT" openplc4::Ctu<u64> {} #[stops] { plain "" call staunch_openplc4_ctu_ulint; }
+            Openplc4 "CTD_ULINT" openplc4::Ctd<u64> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd_ulint; }
+            Openplc4 "CTUD_ULINT" openplc4::Ctud<u64> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctud_ulint; }
+            // What CTD and CTUD mean under the option `openplc4-cd-edge = "rising"`.
+            Openplc4 "CTD_RISING" openplc4::CtdRising<i16> {} #[option CdRises for "CTD"] #[stops] { plain "" call staunch_openplc4_ctd_rising; }
+            Openplc4 "CTUD_RISING" openplc4::CtudRising<i16> {} #[option CdRises for "CTUD"] #[stops] { plain "" call staunch_openplc4_ctud_rising; }
+            Openplc4 "CTD_INT_RISING" openplc4::CtdRising<i16> {} #[option CdRises for "CTD_INT"] #[stops] { plain "" call staunch_openplc4_ctd_int_rising; }
+            Openplc4 "CTUD_INT_RISING" openplc4::CtudRising<i16> {} #[option CdRises for "CTUD_INT"] #[stops] { plain "" call staunch_openplc4_ctud_int_rising; }
+            Openplc4 "CTD_DINT_RISING" openplc4::CtdRising<i32> {} #[option CdRises for "CTD_DINT"] #[stops] { plain "" call staunch_openplc4_ctd_dint_rising; }
+            Openplc4 "CTUD_DINT_RISING" openplc4::CtudRising<i32> {} #[option CdRises for "CTUD_DINT"] #[stops] { plain "" call staunch_openplc4_ctud_dint_rising; }
+            Openplc4 "CTD_LINT_RISING" openplc4::CtdRising<i64> {} #[option CdRises for "CTD_LINT"] #[stops] { plain "" call staunch_openplc4_ctd_lint_rising; }
+            Openplc4 "CTUD_LINT_RISING" openplc4::CtudRising<i64> {} #[option CdRises for "CTUD_LINT"] #[stops] { plain "" call staunch_openplc4_ctud_lint_rising; }
+            Openplc4 "CTD_UDINT_RISING" openplc4::CtdRising<u32> {} #[option CdRises for "CTD_UDINT"] #[stops] { plain "" call staunch_openplc4_ctd_udint_rising; }
+            Openplc4 "CTUD_UDINT_RISING" openplc4::CtudRising<u32> {} #[option CdRises for "CTUD_UDINT"] #[stops] { plain "" call staunch_openplc4_ctud_udint_rising; }
+            Openplc4 "CTD_ULINT_RISING" openplc4::CtdRising<u64> {} #[option CdRises for "CTD_ULINT"] #[stops] { plain "" call staunch_openplc4_ctd_ulint_rising; }
+            Openplc4 "CTUD_ULINT_RISING" openplc4::CtudRising<u64> {} #[option CdRises for "CTUD_ULINT"] #[stops] { plain "" call staunch_openplc4_ctud_ulint_rising; }
+            Openplc4 "TON" openplc4::Ton {} #[also "TON_TIME"] #[overload LTIME] #[in Logix "TONR with an FBD_TIMER"] { timed "" call staunch_openplc4_ton; }
+            Openplc4 "TOF" openplc4::Tof {} #[also "TOF_TIME"] #[overload LTIME] #[in Logix "TOFR with an FBD_TIMER"] { timed "" call staunch_openplc4_tof; }
+            Openplc4 "TP" openplc4::Tp {} #[also "TP_TIME"] #[overload LTIME] #[in Logix "no pulse timer: build it of a TONR"] { timed "" call staunch_openplc4_tp; }
 
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;
@@ -248,6 +283,9 @@ macro_rules! fact {
     };
     ($facts:ident, counts_levels) => {
         Facts { counts_levels: true, ..$facts }
+    };
+    ($facts:ident, counts_falls) => {
+        Facts { counts_falls: true, ..$facts }
     };
     ($facts:ident, in $family:ident $instead:literal) => {
         Facts { instead: Some((Family::$family, $instead)), ..$facts }

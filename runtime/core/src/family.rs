@@ -11,8 +11,10 @@ pub enum Family {
     Cscape,
     /// CODESYS Standard and Standard64.
     Codesys,
-    /// OpenPLC v3, OpenPLC Editor and Beremiz: MATIEC's library, as it runs.
+    /// OpenPLC v3, OpenPLC Editor before v4.1, and Beremiz: MATIEC's library, as it runs.
     Openplc,
+    /// OpenPLC Editor and Runtime from v4.1: STruC++'s library, as it runs.
+    Openplc4,
     /// Rockwell Logix 5000.
     Logix,
 }
@@ -27,7 +29,7 @@ pub enum Keeps {
 }
 
 impl Family {
-    pub const ALL: [Self; 5] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Logix];
+    pub const ALL: [Self; 6] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Openplc4, Self::Logix];
 
     /// The name that qualifies its blocks in Structured Text: `CODESYS.CTU`.
     pub const fn name(self) -> &'static str {
@@ -36,6 +38,7 @@ impl Family {
             Self::Cscape => "CSCAPE",
             Self::Codesys => "CODESYS",
             Self::Openplc => "OPENPLC",
+            Self::Openplc4 => "OPENPLC4",
             Self::Logix => "LOGIX",
         }
     }
@@ -43,7 +46,7 @@ impl Family {
     /// What is left when the power fails and comes back.
     pub const fn over_power_cycle(self) -> Keeps {
         match self {
-            Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc => Keeps::Declared,
+            Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 => Keeps::Declared,
             Self::Logix => Keeps::Everything,
         }
     }
@@ -51,7 +54,7 @@ impl Family {
     /// What is left when the controller goes from IDLE, or STOP, to RUN.
     pub const fn over_run(self) -> Keeps {
         match self {
-            Self::Iec | Self::Cscape | Self::Openplc => Keeps::Declared,
+            Self::Iec | Self::Cscape | Self::Openplc | Self::Openplc4 => Keeps::Declared,
             Self::Codesys | Self::Logix => Keeps::Everything,
         }
     }
@@ -69,7 +72,7 @@ impl Family {
             (Self::Openplc, Elementary::Ltod) => Some("TOD"),
             (Self::Openplc, Elementary::Ldt) => Some("DT"),
             (Self::Openplc, Elementary::Char | Elementary::Wchar) => Some("STRING[1]"),
-            (Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Logix, _) => None,
+            (Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 | Self::Logix, _) => None,
         }
     }
 

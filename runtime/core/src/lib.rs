@@ -41,7 +41,7 @@ pub use block::{
     Retention,
 };
 pub use block_table::BLOCKS;
-pub use blocks::{codesys, cscape, iec, logix, openplc};
+pub use blocks::{codesys, cscape, iec, logix, openplc, openplc4};
 pub use context::{Context, MinorFaults};
 pub use crc::{Crc32, crc32};
 pub use elementary::{Class, Elementary};

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::time::ms;
-use staunch_runtime::{BLOCKS, Block, BlockInfo, Context, PinRole, cscape, iec, logix, openplc};
+use staunch_runtime::{BLOCKS, Block, BlockInfo, Context, PinRole, cscape, iec, logix, openplc, openplc4};
 
 /// Runs a timer at each (time, IN, PT) in milliseconds and gives its (Q, ET).
 macro_rules! timed {
@@ -164,6 +164,9 @@ fn a_call_is_inputs_and_a_step() {
     call_is_inputs_and_step!(openplc::Ctu<u16>: cu: bit, r: bit, pv: number);
     call_is_inputs_and_step!(openplc::Ctd<i32>: cd: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(openplc::Ctud<i64>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
+    call_is_inputs_and_step!(openplc4::Ctd<u16>: cd: bit, ld: bit, pv: number);
+    call_is_inputs_and_step!(openplc4::Ctud<i32>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
+    call_is_inputs_and_step!(openplc4::CtudRising<u64>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(iec::RTrig: clk: bit);
     call_is_inputs_and_step!(iec::FTrig: clk: bit);
     call_is_inputs_and_step!(iec::Sr: s1: bit, r: bit);

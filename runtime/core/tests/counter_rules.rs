@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use serde_json::{Map, Value as Json};
-use staunch_runtime::{BLOCKS, BlockInfo, Context, Family, PinRole, Value};
+use staunch_runtime::{BLOCKS, BlockInfo, BlockOption, Context, Family, PinRole, Value};
 
 /// What a family says, as far as one counter cannot tell by its pins.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,9 @@ struct Rules {
     stops_at_zero: bool,
     saturates: bool,
     both_edges_cancel: bool,
+    /// Up, then down, each judged on the count as it then is.
+    each_by_itself: bool,
+    down_falls: bool,
     done_when_equal: bool,
     empty_when_below: bool,
     done_under_reset: bool,
@@ -36,6 +39,8 @@ fn rules(family: char) -> Rules {
         stops_at_zero: false,
         saturates: true,
         both_edges_cancel: true,
+        each_by_itself: false,
+        down_falls: false,
         done_when_equal: false,
         empty_when_below: true,
         done_under_reset: true,
@@ -53,6 +58,7 @@ fn rules(family: char) -> Rules {
         'B' => cscape,
         'C' => Rules { stops_at_zero: true, ..iec },
         'E' => Rules { stops_at_preset: true, stops_at_zero: true, ..iec },
+        'F' => Rules { stops_at_preset: true, stops_at_zero: true, each_by_itself: true, down_falls: true, ..iec },
         other => panic!("no family {other}"),
     }
 }
@@ -60,26 +66,29 @@ fn rules(family: char) -> Rules {
 /// A row's first words, the families whose rule it is, and its rule broken.
 type Broken = (&'static str, &'static str, fn(&mut Rules));
 
-const ROWS: [Broken; 16] = [
-    ("counts on", "ABCE", |it| it.counts_levels ^= true),
-    ("input TRUE on the very first call", "ABCE", |it| it.first_call_counts = false),
-    ("edge under reset or load", "ACE", |it| it.reset_consumes_edges = false),
-    ("priority", "ABCE", |it| it.reset_beats_counting = false),
-    ("priority", "ACE", |it| it.reset_beats_load = false),
-    ("reset and load", "ABCE", |it| it.reset_is_a_level = false),
-    ("CTU past `PV`", "ABCE", |it| it.stops_at_preset ^= true),
-    ("CTD below 0", "ABE", |it| it.stops_at_zero ^= true),
+const ROWS: [Broken; 18] = [
+    ("counts on", "ABCEF", |it| it.counts_levels ^= true),
+    ("counts on", "F", |it| it.down_falls = false),
+    ("input TRUE on the very first call", "ABCEF", |it| it.first_call_counts = false),
+    ("edge under reset or load", "ACEF", |it| it.reset_consumes_edges = false),
+    ("priority", "ABCEF", |it| it.reset_beats_counting = false),
+    ("priority", "ACEF", |it| it.reset_beats_load = false),
+    ("reset and load", "ABCEF", |it| it.reset_is_a_level = false),
+    ("CTU past `PV`", "ABCEF", |it| it.stops_at_preset ^= true),
+    ("CTD below 0", "ABEF", |it| it.stops_at_zero ^= true),
     ("at the type's limit", "AC", |it| it.saturates = false),
     ("both edges of a CTUD", "ACE", |it| it.both_edges_cancel = false),
-    ("CTU `Q`", "ABCE", |it| it.done_when_equal ^= true),
-    ("CTD `Q`", "ABE", |it| it.empty_when_below ^= true),
-    ("`Q` is computed", "ABCE", |it| it.done_under_reset = false),
+    ("both edges of a CTUD", "F", |it| it.each_by_itself = false),
+    ("CTU `Q`", "ABCEF", |it| it.done_when_equal ^= true),
+    ("CTD `Q`", "ABEF", |it| it.empty_when_below ^= true),
+    ("`Q` is computed", "ABCEF", |it| it.done_under_reset = false),
     // Of what does not count below 0, that it stays there is what its limit says.
     ("CTD below 0", "C", |it| (it.saturates, it.stops_at_zero) = (false, false)),
     ("at the type's limit", "B", |it| it.stops_at_preset = false),
-    ("at the type's limit", "E", |it| it.stops_at_preset = false),
+    ("at the type's limit", "EF", |it| it.stops_at_preset = false),
 ];
 
+#[derive(Clone, Copy)]
 struct Counter {
     rules: Rules,
     limits: (i128, i128),
@@ -106,7 +115,9 @@ impl Counter {
         let rules = self.rules;
         let counts = rules.first_call_counts || std::mem::replace(&mut self.called, true);
         let edge = |now: bool, before: bool| now && counts && (rules.counts_levels || !before);
-        let (up, down) = (edge(it.up, self.up_before), edge(it.down, self.down_before));
+        let falls = !it.down && self.down_before;
+        let down = if rules.down_falls && !rules.counts_levels { falls } else { edge(it.down, self.down_before) };
+        let up = edge(it.up, self.up_before);
         let level = |now: bool, before: bool| now && (rules.reset_is_a_level || !before);
         let (reset, load) = (level(it.reset, self.reset_before), level(it.load, self.load_before));
         (self.reset_before, self.load_before) = (it.reset, it.load);
@@ -128,6 +139,10 @@ impl Counter {
 
     fn counted(&self, up: bool, down: bool, preset: i128) -> i128 {
         let rules = self.rules;
+        if rules.each_by_itself && up && down {
+            let raised = Self { count: self.counted(true, false, preset), ..*self };
+            return raised.counted(false, true, preset);
+        }
         let (up, down) = if up && down { (!rules.both_edges_cancel, false) } else { (up, down) };
         let up = up && !(rules.stops_at_preset && self.count >= preset);
         let down = down && !(rules.stops_at_zero && self.count <= 0);
@@ -158,6 +173,7 @@ fn failure(table: &Json, rules: Rules) -> Option<usize> {
         Json::Bool(true) => Rules { stops_at_preset: true, ..rules },
         _ => rules,
     };
+    let rules = Rules { down_falls: rules.down_falls && table["setup"]["cd_edge"] != "rising", ..rules };
     let mut pins = Map::new();
     let mut counter = Counter {
         rules,
@@ -259,11 +275,18 @@ fn the_blocks_follow_the_rules() {
         seed ^= seed << 17;
         seed % sides
     };
-    let letters = [(Family::Iec, 'A'), (Family::Cscape, 'B'), (Family::Codesys, 'C'), (Family::Openplc, 'E')];
+    let letters = [
+        (Family::Iec, 'A'),
+        (Family::Cscape, 'B'),
+        (Family::Codesys, 'C'),
+        (Family::Openplc, 'E'),
+        (Family::Openplc4, 'F'),
+    ];
     for block in BLOCKS.iter().filter(|it| it.is_counter()) {
         let Some((_, letter)) = letters.iter().find(|it| it.0 == block.family) else { continue };
-        let stops = block.facts.option.is_some();
-        let rules = Rules { stops_at_preset: stops || rules(*letter).stops_at_preset, ..rules(*letter) };
+        let stops = block.facts.option.is_some_and(|it| it.option == BlockOption::CtuStopAtPv);
+        let down_falls = block.facts.counts_falls;
+        let rules = Rules { stops_at_preset: stops || rules(*letter).stops_at_preset, down_falls, ..rules(*letter) };
         for _ in 0..300 {
             random_calls(block, rules, &mut dice);
         }

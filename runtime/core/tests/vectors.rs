@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use serde_json::{Map, Value as Json};
 use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, Family, Instruction, Repr, Value};
 
-const TABLES: usize = 122;
+const TABLES: usize = 167;
 
 #[test]
 fn every_table_holds() {
@@ -157,6 +157,9 @@ fn block_of(table: &Json) -> &'static BlockInfo {
         (b'C', "CTU") if table["setup"]["stop"] == Json::Bool(true) => (Family::Codesys, "CTU_STOP_AT_PV"),
         (b'C', name) => (Family::Codesys, name),
         (b'E', name) => (Family::Openplc, name),
+        (b'F', "CTD") if table["setup"]["cd_edge"] == "rising" => (Family::Openplc4, "CTD_RISING"),
+        (b'F', "CTUD") if table["setup"]["cd_edge"] == "rising" => (Family::Openplc4, "CTUD_RISING"),
+        (b'F', name) => (Family::Openplc4, name),
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER"),
         (b'D', _) => (Family::Logix, "COUNTER"),
         (other, _) => panic!("no family {other}"),

@@ -42,7 +42,7 @@ impl Address {
             (1.., Ok([number])) => 8 * bytes * number,
             _ => return unknown("this address"),
         };
-        let image = if family == Family::Openplc { letters } else { area };
+        let image = if matches!(family, Family::Openplc | Family::Openplc4) { letters } else { area };
         Ok(Self { image: image.to_owned(), window: Window { bit, single: bytes == 0 }, ty })
     }
 }

@@ -2,7 +2,6 @@
 //! Addresses are multiples of their own widths, so that of two which overlap one holds the other.
 
 use super::address::bit_string;
-use crate::dialect::Dialect;
 use crate::types::address::{Start, Storage, Use, field_name};
 use crate::types::declarations::Declarations;
 use crate::types::image::Shared;
@@ -57,7 +56,7 @@ impl<'s> Declarations<'s> {
 
     /// OpenPLC keeps each size in registers of its own, so that %IX0.0 and %IW0 are two.
     fn register_size(&self, it: &Use) -> u8 {
-        if self.dialect(it.span) == Dialect::Openplc { it.address.width } else { 0 }
+        if self.dialect(it.span).has_registers() { it.address.width } else { 0 }
     }
 
     fn share(&mut self, group: &[Use]) {

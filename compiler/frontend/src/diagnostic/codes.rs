@@ -178,4 +178,5 @@ codes! {
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";
     W0612 Warning "a counter's own output resets it";
+    W0616 Warning "a count down on the falling edge";
 }

@@ -417,6 +417,24 @@ const CODESYS: Rules = Rules {
 
 const OPENPLC: Rules = IEC;
 
+const OPENPLC4: Rules = Rules {
+    narrow_integers: follows(
+        NarrowIntegers::AtTheirType,
+        "STruC++ 0.6.1, run: INT 30000 + 10000 into a DINT is -25536",
+    ),
+    real_to_integer: follows(RealToInteger::LowBits, "STruC++ 0.6.1, run: REAL_TO_INT(40000.0) is -25536"),
+    integer_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: INT_TO_BOOL(256) is TRUE"),
+    bits_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: BYTE_TO_BOOL(16#02) is TRUE"),
+    division_by_zero: follows(ByZero::Faults, "STruC++ 0.6.1, run: the process ends"),
+    modulo_by_zero: follows(ByZero::Faults, "STruC++ 0.6.1: as the division"),
+    shr_of_signed: follows(ShrOfSigned::Sign, "STruC++ 0.6.1, run: SHR(-8, 1) is -4"),
+    time_as_number: follows(TimeAsNumber::Milliseconds, "STruC++ 0.6.1, run: TIME_TO_DINT(T#1s500ms) is 1500"),
+    real_and_bits: follows(RealAndBits::Value, "STruC++ 0.6.1, run: REAL_TO_DWORD(1.5) is 2"),
+    default_string: follows(DefaultString::Holds254, "STruC++ 0.6.1: STRING_LENGTH"),
+    integer_text: follows(IntegerText::Digits, "STruC++ 0.6.1, run: INT_TO_STRING(207)"),
+    ..IEC
+};
+
 const LOGIX: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::At32Bits, "1756-RM006, \"Data conversions\""),
     default_string: follows(DefaultString::Holds82, "1756-RM003, \"String types\""),
@@ -445,6 +463,7 @@ impl Dialect {
             Self::Cscape => &CSCAPE,
             Self::Codesys => &CODESYS,
             Self::Openplc => &OPENPLC,
+            Self::Openplc4 => &OPENPLC4,
             Self::Logix => &LOGIX,
             Self::Siemens => &SIEMENS,
         }

@@ -89,7 +89,7 @@ pub(super) const fn has_characters(dialect: Dialect) -> bool {
 /// The index of a string's first character, in dialects that have one.
 const fn first_character(dialect: Dialect) -> Option<i64> {
     match dialect {
-        Dialect::Iec | Dialect::Openplc | Dialect::Siemens => Some(1),
+        Dialect::Iec | Dialect::Openplc | Dialect::Openplc4 | Dialect::Siemens => Some(1),
         Dialect::Codesys => Some(0),
         Dialect::Cscape | Dialect::Logix => None,
     }

@@ -145,6 +145,7 @@ impl<'s> Checker<'_, 's> {
         note_members_read(body, &mut read);
         for call in &calls {
             self.reset_by_itself(call, &read);
+            self.counted_as_it_falls(call);
         }
     }
 
@@ -269,6 +270,30 @@ impl<'s> Checker<'_, 's> {
                 );
             }
         }
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    /// Trap 17: `c(CD := pulse)` counts when the pulse ends. Who gives `NOT pulse` knows.
+    fn counted_as_it_falls(&mut self, call: &CounterCall<'_, 's>) {
+        if !call.block.info().facts.counts_falls {
+            return;
+        }
+        let Some((given, at)) = call.input(PinRole::Down) else { return };
+        if matches!(bare(given).kind, Ast::Unary(ast::UnaryOp::Not, _) | Ast::Literal(_)) {
+            return;
+        }
+        let text = self.decl.log.sources.text(bare(given).span);
+        let negated = if matches!(bare(given).kind, Ast::Binary(..)) { format!("({text})") } else { text.to_owned() };
+        self.report(
+            Diagnostic::new(Code::W0616, at, format!("`{}` counts down when CD falls", call.name))
+                .label("counted when this becomes FALSE")
+                .note("OpenPLC from v4.1 has an F_TRIG here, up to Editor 4.2.11 at least; before v4.1 it counted the rise")
+                .help(format!(
+                    "give `NOT {negated}` to count when it rises; where your Editor counts the rise, say \
+                     `openplc4-cd-edge = \"rising\"` in staunch.toml"
+                )),
+        );
     }
 }
 

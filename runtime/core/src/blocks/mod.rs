@@ -10,6 +10,7 @@ pub mod cscape;
 pub mod iec;
 pub mod logix;
 pub mod openplc;
+pub mod openplc4;
 
 mod bistable;
 mod clock;

@@ -138,8 +138,9 @@ impl Findings {
         }
         let per_counter = Pitfall::of_counters().count();
         for (sighting, trace) in &traces {
-            if let (Subject::Counter(at), Some(pitfall)) = sighting {
-                let known = &mut self.all[at * per_counter + pitfall.number() - 1].verdict;
+            let place = |it: Pitfall| Pitfall::of_counters().position(|own| own == it);
+            if let (Subject::Counter(at), Some(number)) = (sighting.0, sighting.1.and_then(place)) {
+                let known = &mut self.all[at * per_counter + number].verdict;
                 if !matches!(known, Verdict::Reachable(Some(_))) {
                     *known = Verdict::Reachable(Some(trace.clone()));
                 }

@@ -354,9 +354,18 @@ impl Pair {
 
     /// Whether a one-shot is another block on the other system: F_TRIG is on OPENPLC.
     pub fn is_other_one_shot(&self, at: usize) -> bool {
+        self.is_other(at, "CLK")
+    }
+
+    /// Whether a timer is: each is on OPENPLC4.
+    pub fn is_other_timer(&self, at: usize) -> bool {
+        self.is_other(at, "PT")
+    }
+
+    fn is_other(&self, at: usize, pin: &str) -> bool {
         let [a, b] = self.blocks[at];
         let [a, b] = [&self.sides[0].scalars.blocks[a], &self.sides[1].scalars.blocks[b]];
-        a.block != b.block && a.block.info().pin("CLK").is_some()
+        a.block != b.block && a.block.info().pin(pin).is_some()
     }
 
     /// Whether all that is compared was the same before the last scan.

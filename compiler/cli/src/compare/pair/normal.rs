@@ -31,9 +31,9 @@ impl Timer {
         }
         // A path of tokens, which the table prints with spaces between.
         let kind = match info.rust_path.replace(' ', "").as_str() {
-            "iec::Ton" => Kind::OnDelay,
-            "iec::Tof" => Kind::OffDelay,
-            "iec::Tp" => Kind::Pulse,
+            "iec::Ton" | "openplc4::Ton" => Kind::OnDelay,
+            "iec::Tof" | "openplc4::Tof" => Kind::OffDelay,
+            "iec::Tp" | "openplc4::Tp" => Kind::Pulse,
             _ => Kind::Other,
         };
         let at = |it: &'static Pin| instance.offset + it.offset;

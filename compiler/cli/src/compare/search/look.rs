@@ -66,7 +66,11 @@ fn sightings(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -
 /// The blocks that have parted in the last scan, by an event or by what they are given.
 fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
     let restarted = (event.is_some() || pair.is_restarted()).then_some(Pitfall::RESTART);
-    let pitfall = |at: usize| if pair.is_other_one_shot(at) { Some(Pitfall::FIRST_FALL) } else { restarted };
+    let pitfall = |at: usize| match () {
+        () if pair.is_other_one_shot(at) => Some(Pitfall::FIRST_FALL),
+        () if restarted.is_none() && pair.is_other_timer(at) => Some(Pitfall::LATER_CALL),
+        () => restarted,
+    };
     let parted = |outputs: &[Matched]| {
         outputs.iter().any(|it| pair.newly_differs(*it)) && outputs.iter().all(|it| pair.agreed(*it))
     };

@@ -147,7 +147,7 @@ impl Builder<'_> {
             let instances = [&pair.sides[0].scalars.blocks[*a], &pair.sides[1].scalars.blocks[*b]];
             let kind = Kind::of(instances[0]);
             let keeps = |side: usize, event| pair.sides[side].keeps(event, instances[side].offset);
-            for pitfall in [None, Some(Pitfall::RESTART), Some(Pitfall::FIRST_FALL)] {
+            for pitfall in [None, Some(Pitfall::RESTART), Some(Pitfall::FIRST_FALL), Some(Pitfall::LATER_CALL)] {
                 if self.accepted.takes(kind, &instances[0].path, pitfall) {
                     let bit = self.root(instances.map(|it| it.field));
                     self.note(instances[0].field, &instances[0].path);

@@ -3,7 +3,7 @@
 
 use super::list::Pitfall;
 use Form::{Down, Up, UpDown};
-use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc};
+use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4};
 
 /// Where no text is proved.
 const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
@@ -357,7 +357,7 @@ impl Pitfall {
         let text = texts.join(" ");
         match to {
             Cscape | Codesys => text.replace("R := ", "RESET := ").replace("LD := ", "LOAD := "),
-            Iec | Openplc | Logix | Dialect::Siemens => text,
+            Iec | Openplc | Openplc4 | Logix | Dialect::Siemens => text,
         }
     }
 }

@@ -56,7 +56,7 @@ fn is_kept_alike(pair: &Pair, at: usize, event: Option<Event>) -> bool {
 pub(super) fn kind(instance: &Instance) -> Option<Kind> {
     let info = instance.block.info();
     let count = info.pin_for(PinRole::Count)?;
-    Some(Kind { family: info.family, repr: count.repr(), stops: info.facts.stops })
+    Some(Kind { family: info.family, repr: count.repr(), stops: info.facts.stops, falls: info.facts.counts_falls })
 }
 
 fn pins(instance: &Instance, state: &[u8]) -> Pins {
@@ -127,6 +127,9 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     }
     if let Some(block) = first_fall(pair, rows) {
         return Cause { counter: Some(block), pitfall: Some(Pitfall::FIRST_FALL) };
+    }
+    if let Some(block) = later_call(pair, rows) {
+        return Cause { counter: Some(block), pitfall: Some(Pitfall::LATER_CALL) };
     }
     let widths = differences.iter().any(|[a, b]| {
         let [a, b] = [pair.scalar(0, *a), pair.scalar(1, *b)];
@@ -211,11 +214,20 @@ fn case_in(pair: &Pair, rows: &[Row], at: usize, counter: usize, habits: Habits)
 
 /// The first F_TRIG that comes to differ because it is another block on the other system.
 fn first_fall(pair: &Pair, rows: &[Row]) -> Option<String> {
+    first_other(pair, rows, |it| pair.is_other_one_shot(it))
+}
+
+/// The first timer that does.
+fn later_call(pair: &Pair, rows: &[Row]) -> Option<String> {
+    first_other(pair, rows, |it| pair.is_other_timer(it))
+}
+
+fn first_other(pair: &Pair, rows: &[Row], is_other: impl Fn(usize) -> bool) -> Option<String> {
     let parts = |at: usize, block: usize| {
         let outputs = &pair.block_outputs[block];
         outputs.iter().all(|it| agrees(pair, rows, at, *it)) && outputs.iter().any(|it| !pair.same(*it, &rows[at]))
     };
-    let others: Vec<_> = (0..pair.blocks.len()).filter(|it| pair.is_other_one_shot(*it)).collect();
+    let others: Vec<_> = (0..pair.blocks.len()).filter(|it| is_other(*it)).collect();
     let first = (0..rows.len()).find_map(|at| others.iter().copied().find(|it| parts(at, *it)))?;
     Some(pair.sides[0].scalars.blocks[pair.blocks[first][0]].path.clone())
 }

@@ -25,6 +25,8 @@ pub struct Kind {
     pub repr: Repr,
     /// It counts up only below its preset, and down only above 0.
     pub stops: bool,
+    /// It counts down on the falling edge.
+    pub falls: bool,
 }
 
 /// How a program uses a counter, as far as it decides which pitfall is seen.
@@ -63,6 +65,26 @@ impl Case {
     /// Whether one side is of this family and the other is not.
     fn parts(&self, family: Family) -> bool {
         self.has(family) && self.kinds[0].family != self.kinds[1].family
+    }
+
+    /// Whether one side alone is OpenPLC's, of either library.
+    fn parts_openplc(&self) -> bool {
+        let [a, b] = self.kinds.map(|it| is_openplc(it.family));
+        a != b
+    }
+
+    /// CD falls, or rises, where the sides count it on other edges.
+    fn other_edge(&self) -> bool {
+        let moves = |side: usize| self.before[side].down != self.now[side].down;
+        self.kinds[0].falls != self.kinds[1].falls && (moves(0) || moves(1))
+    }
+
+    /// Both edges in one call, of which OPENPLC4 counts each by itself.
+    fn both_edges(&self) -> bool {
+        let side = usize::from(self.kinds[1].family == Family::Openplc4);
+        let (before, now) = (self.before[side], self.now[side]);
+        let down = before.down != now.down && now.down != self.kinds[side].falls;
+        self.parts(Family::Openplc4) && !before.up && now.up && down
     }
 
     fn up(&self) -> bool {
@@ -152,6 +174,12 @@ fn counts(case: &Case) -> Option<usize> {
     if case.guards_itself && case.makes_an_edge() {
         return Some(14);
     }
+    if case.both_edges() && case.kinds[0].falls == case.kinds[1].falls {
+        return Some(18);
+    }
+    if case.other_edge() && !case.given_differs() && !case.past_zero() {
+        return Some(17);
+    }
     let counts_again = case.parts(Family::Logix) || case.parts(Family::Cscape);
     if counts_again && was_reset && !is_reset && (case.up() || case.down()) && !case.past_zero() {
         return Some(if case.feeds_itself { 12 } else { 6 });
@@ -166,7 +194,7 @@ fn counts(case: &Case) -> Option<usize> {
         return Some(4);
     }
     if case.past_zero() {
-        return Some(if case.parts(Family::Openplc) { 15 } else { 3 });
+        return Some(if case.parts_openplc() { 15 } else { 3 });
     }
     beyond_preset(case).or_else(|| (case.parts(Family::Cscape) && !case.given_differs()).then_some(1)).or_else(|| {
         let same_bits = (a.count - b.count).rem_euclid(1 << 16) == 0;
@@ -186,7 +214,7 @@ pub(super) fn counts_without_edge(case: &Case) -> bool {
 fn beyond_preset(case: &Case) -> Option<usize> {
     let [a, b] = case.now;
     let stops = case.kinds[0].stops != case.kinds[1].stops;
-    let number = if case.parts(Family::Openplc) { 15 } else { 2 };
+    let number = if case.parts_openplc() { 15 } else { 2 };
     (stops && case.up() && a.count.min(b.count) >= a.preset.min(b.preset)).then_some(number)
 }
 
@@ -206,6 +234,11 @@ fn outputs(case: &Case) -> Option<usize> {
         return Some(8);
     }
     case.parts(Family::Cscape).then_some(10)
+}
+
+/// OpenPLC before v4.1, or from then on.
+pub(super) fn is_openplc(family: Family) -> bool {
+    matches!(family, Family::Openplc | Family::Openplc4)
 }
 
 /// Whether a count of this kind can be negative.

@@ -1,7 +1,7 @@
 //! Which pitfalls cannot happen to a counter.
 
 use super::cause::kind;
-use super::classify::{Habits, goes_below};
+use super::classify::{Habits, goes_below, is_openplc};
 use super::list::Pitfall;
 use crate::compare::pair::Pair;
 use crate::compare::program::scalar::Instance;
@@ -66,6 +66,7 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
     let kinds = instances.map(kind);
     let [Some(a), Some(b)] = kinds else { return Some("it is no counter") };
     let parts = |family: Family| (a.family == family) != (b.family == family);
+    let parts_openplc = is_openplc(a.family) != is_openplc(b.family);
     let has = |role: PinRole| instances.iter().any(|it| it.has(role));
     let same_kind = a == b;
     let no_cscape = (!parts(Family::Cscape)).then_some("CSCAPE is neither, or both, of the two systems");
@@ -75,7 +76,7 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
     match pitfall.number() {
         _ if !usage.is_used => Some("it is never called"),
         1 => no_cscape,
-        2 | 3 if parts(Family::Openplc) => Some("what OPENPLC does is trap 15"),
+        2 | 3 if parts_openplc => Some("what OPENPLC does is trap 15"),
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),
         3 => no_down.or_else(|| (goes_below(a) == goes_below(b)).then_some("both systems do the same at 0")),
         4 => no_logix
@@ -90,7 +91,10 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         11 => usage.kept_alike.then_some("both systems keep, or lose, the same of it"),
         12 => (!usage.reset_depends).then_some("what resets it does not depend on its own output"),
         14 => no_down.or((!usage.habits.guards_itself).then_some("no input of it depends on its own count")),
-        _ if !parts(Family::Openplc) => Some("OPENPLC is neither, or both, of the two systems"),
+        17 | 18 if !parts(Family::Openplc4) => Some("OPENPLC4 is neither, or both, of the two systems"),
+        17 => no_down.or_else(|| (a.falls == b.falls).then_some("both systems count CD on the same edge")),
+        18 => no_down.or(no_up),
+        _ if !parts_openplc => Some("OPENPLC is neither, or both, of the two systems"),
         _ => (a.stops == b.stops && goes_below(a) == goes_below(b)).then_some("the other system stops as OPENPLC does"),
     }
 }

@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Pitfall(usize);
 
-const PITFALLS: [&str; 16] = [
+const PITFALLS: [&str; 19] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
     "Past PV: CSCAPE holds; `IF c.CV > PV` never fires there, `CV = PV` fires for long.",
     "CTD at 0: IEC and Logix go negative; CSCAPE and CODESYS stay.",
@@ -19,14 +19,19 @@ const PITFALLS: [&str; 16] = [
     "`c(R := done); done := c.Q;` loses a call on CSCAPE, an edge of a CTUD's other input, and an edge when PV moves.",
     "DN of Logix is evaluated only while the rung is TRUE; Q of the others in every call.",
     "The guard `CD := pulse AND c.CV > 0` makes an edge of its own when CV leaves 0.",
-    "OPENPLC stops at PV and at 0: `CV > PV` never holds, as on CSCAPE, and no count goes below 0.",
+    "OPENPLC, before and from v4.1, stops at PV and at 0: `CV > PV` never holds, as on CSCAPE, and no count goes below 0.",
     "F_TRIG called first with CLK FALSE: OPENPLC sees an edge, the others do not.",
+    "CD: OPENPLC4 (OpenPLC from v4.1, Editor 4.2.11 too) counts down when the input falls, the others when it rises.",
+    "Both edges of a CTUD in one call: OPENPLC4 counts up, then down, so at PV it counts down; on the others CV stays.",
+    "TON, TOF and TP on OPENPLC4 see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
 ];
 
 impl Pitfall {
     pub const RESTART: Self = Self::numbered(11);
-    /// Of F_TRIG; all others are of counters.
+    /// Of F_TRIG.
     pub const FIRST_FALL: Self = Self::numbered(16);
+    /// Of timers.
+    pub const LATER_CALL: Self = Self::numbered(19);
     pub const WIDTHS: Self = Self::numbered(8);
 
     /// Its number, from 1.
@@ -45,7 +50,7 @@ impl Pitfall {
     }
 
     pub fn of_counters() -> impl Iterator<Item = Self> {
-        (0..Self::FIRST_FALL.0).map(Self)
+        (0..PITFALLS.len()).map(Self).filter(|it| ![Self::FIRST_FALL, Self::LATER_CALL].contains(it))
     }
 
     pub fn sentence(self) -> &'static str {
