@@ -50,6 +50,7 @@ pub struct Build {
     libraries: Vec<PathBuf>,
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
+    f_trig_before_2024_12: Option<bool>,
     implicit_narrowing: Option<bool>,
     levels: Vec<(Level, String)>,
 }
@@ -96,6 +97,13 @@ impl Build {
     #[must_use]
     pub fn ctu_stop_at_pv(mut self, stops: bool) -> Self {
         self.ctu_stop_at_pv = Some(stops);
+        self
+    }
+
+    /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
+    #[must_use]
+    pub fn f_trig_before_2024_12(mut self, is_old: bool) -> Self {
+        self.f_trig_before_2024_12 = Some(is_old);
         self
     }
 
@@ -223,6 +231,7 @@ impl Build {
         let options = staunch_frontend::Options {
             dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
+            f_trig_before_2024_12: self.f_trig_before_2024_12.unwrap_or(project.f_trig_before_2024_12),
             implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
             ..Default::default()
         };

@@ -16,6 +16,7 @@ pub struct Project {
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
     pub ctu_stop_at_pv: bool,
+    pub f_trig_before_2024_12: bool,
     pub implicit_narrowing: bool,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
@@ -128,6 +129,9 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "cycle" => project.cycle = Some(text(key, value)?),
         "loop-budget" => project.loop_budget = Some(number(key, value)?),
         "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
+        "openplc-f-trig" => {
+            project.f_trig_before_2024_12 = choice(key, value, &["now", "before-2024-12"])? == "before-2024-12";
+        }
         "implicit-narrowing" => project.implicit_narrowing = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,
         "deny" => project.deny = texts(key, value)?,
@@ -138,7 +142,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
+                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, openplc-f-trig, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }

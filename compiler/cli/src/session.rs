@@ -360,6 +360,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
     Ok(Options {
         dialect,
         ctu_stop_at_pv: project.ctu_stop_at_pv,
+        f_trig_before_2024_12: project.f_trig_before_2024_12,
         implicit_narrowing: project.implicit_narrowing,
         moved_from: None,
         tests: false,

@@ -9,6 +9,8 @@ pub struct Options {
     pub dialect: Dialect,
     /// CODESYS `CTU` stops at its preset, as some of its documents say.
     pub ctu_stop_at_pv: bool,
+    /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
+    pub f_trig_before_2024_12: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
     pub implicit_narrowing: bool,
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
@@ -28,6 +30,7 @@ impl Options {
     pub(crate) fn is_on(&self, option: staunch_runtime::BlockOption) -> bool {
         match option {
             staunch_runtime::BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
+            staunch_runtime::BlockOption::FTrigBefore202412 => self.f_trig_before_2024_12,
         }
     }
 }

@@ -147,6 +147,8 @@ pub struct Replacement {
 pub enum BlockOption {
     /// CODESYS: `CTU` stops at its preset, as some of its documents say.
     CtuStopAtPv,
+    /// OpenPLC: `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
+    FTrigBefore202412,
 }
 
 /// A counter with one pin more, for the variable that keeps its count over a restart.

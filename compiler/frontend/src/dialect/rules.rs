@@ -18,12 +18,30 @@ pub struct Rules {
     pub real_and_bits: Followed<RealAndBits>,
     pub default_string: Followed<DefaultString>,
     pub integer_text: Followed<IntegerText>,
+    pub functions: Followed<Functions>,
 }
 
 impl Rules {
     /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
     pub const fn promotes_integers(&self) -> bool {
-        matches!(self.narrow_integers.choice, NarrowIntegers::At32Bits)
+        matches!(self.narrow_integers.choice, NarrowIntegers::At32Bits | NarrowIntegers::AsCPromotes)
+    }
+
+    /// Bit strings are promoted as well, and a function takes and gives values of its own type, which are cut.
+    pub const fn promotes_as_c(&self) -> bool {
+        matches!(self.narrow_integers.choice, NarrowIntegers::AsCPromotes)
+    }
+
+    pub const fn has_functions_of_matiec(&self) -> bool {
+        matches!(self.functions.choice, Functions::OfMatiec)
+    }
+
+    pub const fn time_is_seconds(&self) -> bool {
+        matches!(self.time_as_number.choice, TimeAsNumber::Seconds)
+    }
+
+    pub const fn rounds_to_lint(&self) -> bool {
+        matches!(self.real_to_integer.choice, RealToInteger::LowBitsOfLint)
     }
 
     pub const fn keeps_sign(&self) -> bool {
@@ -57,6 +75,7 @@ trait Choice: Copy {
 pub enum NarrowIntegers {
     AtTheirType,
     At32Bits,
+    AsCPromotes,
 }
 
 impl Choice for NarrowIntegers {
@@ -66,6 +85,7 @@ impl Choice for NarrowIntegers {
         match self {
             Self::AtTheirType => "at their type",
             Self::At32Bits => "at 32 bits",
+            Self::AsCPromotes => "at 32 bits by operators, at their type by functions",
         }
     }
 }
@@ -74,6 +94,7 @@ impl Choice for NarrowIntegers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RealToInteger {
     Saturates,
+    LowBitsOfLint,
 }
 
 impl Choice for RealToInteger {
@@ -82,6 +103,7 @@ impl Choice for RealToInteger {
     fn words(self) -> &'static str {
         match self {
             Self::Saturates => "the nearest value of the type",
+            Self::LowBitsOfLint => "the low bits of a LINT; 0 for an unsigned type and a negative value",
         }
     }
 }
@@ -106,12 +128,14 @@ impl ToBool {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ByZero {
     Faults,
+    GivesZero,
 }
 
 impl ByZero {
     const fn words(self) -> &'static str {
         match self {
             Self::Faults => "a fault",
+            Self::GivesZero => "0",
         }
     }
 }
@@ -138,6 +162,7 @@ impl Choice for ShrOfSigned {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAsNumber {
     Milliseconds,
+    Seconds,
 }
 
 impl Choice for TimeAsNumber {
@@ -146,6 +171,7 @@ impl Choice for TimeAsNumber {
     fn words(self) -> &'static str {
         match self {
             Self::Milliseconds => "milliseconds",
+            Self::Seconds => "seconds",
         }
     }
 }
@@ -171,6 +197,7 @@ impl Choice for RealAndBits {
 pub enum DefaultString {
     Holds80,
     Holds82,
+    Holds126,
     Holds254,
 }
 
@@ -179,6 +206,7 @@ impl DefaultString {
         match self {
             Self::Holds80 => 80,
             Self::Holds82 => 82,
+            Self::Holds126 => 126,
             Self::Holds254 => 254,
         }
     }
@@ -191,6 +219,7 @@ impl Choice for DefaultString {
         match self {
             Self::Holds80 => "80 characters",
             Self::Holds82 => "82 characters",
+            Self::Holds126 => "126 characters",
             Self::Holds254 => "254 characters",
         }
     }
@@ -214,6 +243,24 @@ impl Choice for IntegerText {
     }
 }
 
+/// Which library the standard functions are of, where the standard leaves an edge open or a library departs from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Functions {
+    OfTheStandard,
+    OfMatiec,
+}
+
+impl Choice for Functions {
+    const RULE: &'static str = "standard functions";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::OfTheStandard => "as the standard",
+            Self::OfMatiec => "as MATIEC's library",
+        }
+    }
+}
+
 const IEC: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::AtTheirType, "IEC 61131-3, 6.6.2.5.4: a result has its operands' type"),
     real_to_integer: follows(RealToInteger::Saturates, "IEC 61131-3, table 22: left to the implementer"),
@@ -226,6 +273,7 @@ const IEC: Rules = Rules {
     real_and_bits: follows(RealAndBits::Value, "left to the implementer"),
     default_string: follows(DefaultString::Holds254, "left to the implementer"),
     integer_text: follows(IntegerText::Digits, "left to the implementer"),
+    functions: follows(Functions::OfTheStandard, "IEC 61131-3, 6.6.2.5"),
 };
 
 const CSCAPE: Rules = Rules { default_string: follows(DefaultString::Holds80, "no page says it; as CODESYS"), ..IEC };
@@ -239,7 +287,21 @@ const CODESYS: Rules = Rules {
     ..IEC
 };
 
-const OPENPLC: Rules = IEC;
+/// MATIEC's C, as gcc compiles it for x86-64: programs were compiled by it and run.
+const OPENPLC: Rules = Rules {
+    narrow_integers: follows(NarrowIntegers::AsCPromotes, MATIEC),
+    real_to_integer: follows(RealToInteger::LowBitsOfLint, MATIEC),
+    integer_to_bool: follows(ToBool::NotZero, MATIEC),
+    bits_to_bool: follows(ToBool::NotZero, MATIEC),
+    modulo_by_zero: follows(ByZero::GivesZero, MATIEC),
+    time_as_number: follows(TimeAsNumber::Seconds, MATIEC),
+    default_string: follows(DefaultString::Holds126, MATIEC),
+    functions: follows(Functions::OfMatiec, MATIEC),
+    ..IEC
+};
+
+/// The compiler whose programs were run, by its commit.
+const MATIEC: &str = "thiagoralves/matiec f9ca9ba, run";
 
 const LOGIX: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::At32Bits, "1756-RM006, \"Data conversions\""),
@@ -287,6 +349,7 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.real_and_bits),
         row(|it| &it.default_string),
         row(|it| &it.integer_text),
+        row(|it| &it.functions),
     ]
 }
 
