@@ -51,6 +51,7 @@ pub struct Build {
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
     openplc4_cd_rises: Option<bool>,
+    f_trig_before_2024_12: Option<bool>,
     implicit_narrowing: Option<bool>,
     levels: Vec<(Level, String)>,
 }
@@ -104,6 +105,13 @@ impl Build {
     #[must_use]
     pub fn ctu_stop_at_pv(mut self, stops: bool) -> Self {
         self.ctu_stop_at_pv = Some(stops);
+        self
+    }
+
+    /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
+    #[must_use]
+    pub fn f_trig_before_2024_12(mut self, is_old: bool) -> Self {
+        self.f_trig_before_2024_12 = Some(is_old);
         self
     }
 
@@ -232,6 +240,7 @@ impl Build {
             dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
             openplc4_cd_rises: self.openplc4_cd_rises.unwrap_or(project.openplc4_cd_rises),
+            f_trig_before_2024_12: self.f_trig_before_2024_12.unwrap_or(project.f_trig_before_2024_12),
             implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
             ..Default::default()
         };

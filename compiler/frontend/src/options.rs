@@ -13,6 +13,8 @@ pub struct Options {
     pub ctu_stop_at_pv: bool,
     /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
     pub openplc4_cd_rises: bool,
+    /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
+    pub f_trig_before_2024_12: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
     pub implicit_narrowing: bool,
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
@@ -33,6 +35,7 @@ impl Options {
         match option {
             BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
             BlockOption::CdRises => self.openplc4_cd_rises,
+            BlockOption::FTrigBefore202412 => self.f_trig_before_2024_12,
         }
     }
 
@@ -42,6 +45,7 @@ impl Options {
         match option {
             BlockOption::CtuStopAtPv => Self { ctu_stop_at_pv: is_on, ..self },
             BlockOption::CdRises => Self { openplc4_cd_rises: is_on, ..self },
+            BlockOption::FTrigBefore202412 => Self { f_trig_before_2024_12: is_on, ..self },
         }
     }
 }
@@ -71,6 +75,12 @@ pub const OPEN_OPTIONS: &[OpenOption] = &[
         name: "openplc4-cd-edge",
         question: "OpenPLC Editor counts CD on its falling edge through 4.2.11; a later version may count the rising edge.",
         settings: ["falling", "rising"],
+    },
+    OpenOption {
+        option: BlockOption::FTrigBefore202412,
+        name: "openplc-f-trig",
+        question: "F_TRIG of OpenPLC sees an edge in a first call with CLK FALSE in versions before December 2024.",
+        settings: ["now", "before-2024-12"],
     },
 ];
 

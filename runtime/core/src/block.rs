@@ -152,6 +152,8 @@ pub enum BlockOption {
     CtuStopAtPv,
     /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
     CdRises,
+    /// OpenPLC: `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
+    FTrigBefore202412,
 }
 
 /// A counter with one pin more, for the variable that keeps its count over a restart.

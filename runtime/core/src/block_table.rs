@@ -102,7 +102,12 @@ macro_rules! for_each_block {
             Openplc "CTU_ULINT" openplc::Ctu<u64> {} #[stops] { plain "" call staunch_openplc_ctu_ulint; }
             Openplc "CTD_ULINT" openplc::Ctd<u64> {} #[stops] { plain "" call staunch_openplc_ctd_ulint; }
             Openplc "CTUD_ULINT" openplc::Ctud<u64> {} #[stops] { plain "" call staunch_openplc_ctud_ulint; }
-            Openplc "F_TRIG" openplc::FTrig {} #[in Logix "OSFI with an FBD_ONESHOT"] { plain "" call staunch_openplc_f_trig; }
+            Openplc "TON" openplc::Ton {} #[also "TON_TIME"] #[overload LTIME] #[in Logix "TONR with an FBD_TIMER"] { timed "" call staunch_openplc_ton; }
+            Openplc "TOF" openplc::Tof {} #[also "TOF_TIME"] #[overload LTIME] #[in Logix "TOFR with an FBD_TIMER"] { timed "" call staunch_openplc_tof; }
+            Openplc "TP" openplc::Tp {} #[also "TP_TIME"] #[overload LTIME] #[in Logix "no pulse timer: build it of a TONR"] { timed "" call staunch_openplc_tp; }
+            Openplc "F_TRIG" iec::FTrig {} #[in Logix "OSFI with an FBD_ONESHOT"] { plain "" call staunch_openplc_f_trig; }
+            // What F_TRIG means under the setting `openplc-f-trig = "before-2024-12"`.
+            Openplc "F_TRIG_BEFORE_2024_12" openplc::FTrig {} #[option FTrigBefore202412 for "F_TRIG"] #[in Logix "OSFI with an FBD_ONESHOT"] { plain "" call staunch_openplc_f_trig_before_2024_12; }
 
             Openplc4 "CTU" openplc4::Ctu<i16> {} #[stops] { plain "" call staunch_openplc4_ctu; }
             Openplc4 "CTD" openplc4::Ctd<i16> {} #[stops] #[counts_falls] { plain "" call staunch_openplc4_ctd; }

@@ -20,6 +20,8 @@ macro_rules! for_each_op {
             Mul         "MUL"      mul        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total extensible;
             Div         "DIV"      div        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    faults;
             Mod         "MOD"      modulo     (IN1: T, IN2: T) -> T                  [ANY_INT as integer]         faults;
+            // MOD in OpenPLC.
+            ModOrZero   "_MOD_0"   modulo_or_zero (IN1: T, IN2: T) -> T              [ANY_INT as integer]         total;
             Neg         "NEG"      neg        (IN: T) -> T                           [ANY_MAGNITUDE as number]    total;
             Abs         "ABS"      abs        (IN: T) -> T                           [ANY_NUM as number]          total;
             Expt        "EXPT"     expt       (IN1: T, IN2: T) -> T                  [ANY_REAL as real]           total;
@@ -39,6 +41,14 @@ macro_rules! for_each_op {
             Floor       "_FLOOR"   floor      (IN: T) -> T                           [ANY_REAL as real]           total;
             Whole       "_WHOLE"   whole      (IN: T) -> T                           [ANY_REAL as real]           total;
             Nearest     "_NEAREST" nearest    (IN: T) -> T                           [ANY_REAL as real]           total;
+            // Conversions of OpenPLC, by way of LINT or seconds.
+            RoundToLint "_LINT_OF" round_to_lint (IN: T) -> LINT                     [ANY_REAL as real]           total;
+            RoundToUlint "_ULINT_OF" round_to_ulint (IN: T) -> LINT                  [ANY_REAL as real]           total;
+            TimeOfSeconds "_TIME_OF" time_of_seconds (IN: T) -> LINT                 [ANY_REAL as real]           total;
+            TimeTimes   "_TIME_MUL" time_times (IN: T, BY: LREAL) -> LINT            [ANY_INT as long]            total;
+            TimeOver    "_TIME_DIV" time_over (IN: T, BY: LREAL) -> LINT             [ANY_INT as long]            total;
+            LimitLow    "_LIMIT_LOW" limit_low_first (MN: T, IN: T, MX: T) -> T      [ANY_ELEMENTARY as any]      total;
+            SecondsOf   "_SECONDS_OF" seconds_of (IN: T) -> LREAL                    [ANY_INT as long]            total;
             And         "AND"      and        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Or          "OR"       or         (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Xor         "XOR"      xor        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
@@ -139,6 +149,16 @@ macro_rules! for_each_text_op {
             Insert       "INSERT"    insert     (IN1: ANY_STRING, IN2: ANY_STRING, P: ANY_INT) -> ANY_STRING [each];
             Delete       "DELETE"    delete     (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
             Replace      "REPLACE"   replace    (IN1: ANY_STRING, IN2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            // Those of OpenPLC.
+            CompareStart "_COMPARE_START" compare_start (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
+            FindOrEnd    "_FIND_OR_END" find_or_end (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
+            ReplaceUpTo  "_REPLACE_UP_TO" replace_up_to (IN1: ANY_STRING, IN2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            FromBits     "_FROM_BITS"  from_bits  (IN: ULINT) -> STRING [one];
+            FromGeneral  "_FROM_GENERAL" from_general (IN: LREAL) -> STRING [one];
+            FromSeconds  "_FROM_SECONDS" from_seconds (IN: LINT, KIND: LINT) -> STRING [one];
+            ToBoolWord   "_TO_BOOL_WORD" to_bool_word (IN: STRING) -> BOOL [one];
+            ToLintBack   "_TO_LINT_BACK" to_lint_back (IN: STRING) -> LINT [one];
+            ToLrealDot   "_TO_LREAL_DOT" to_lreal_dot (IN: STRING) -> LREAL [one];
             // Text of values, and values of text.
             FromBool     "_FROM_BOOL"  from_bool  (IN: BOOL) -> STRING [one];
             FromLint     "_FROM_LINT"  from_lint  (IN: LINT) -> STRING [one];

@@ -4,11 +4,13 @@
 //! nearest one that is in range, so a negative count acts as 0.
 
 mod conversion;
+mod matiec;
 mod string_type;
 mod unit;
 
 pub use crate::utf16;
 pub use conversion::*;
+pub use matiec::*;
 pub use string_type::StringType;
 pub use unit::{Unit, characters, utf16_length, utf16_units};
 

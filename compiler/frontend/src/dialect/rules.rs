@@ -25,6 +25,7 @@ pub struct Rules {
     pub sqrt_of_negative: Followed<SqrtOfNegative>,
     pub modulo_of_reals: Followed<ModuloOfReals>,
     pub rotated_constant: Followed<RotatedConstant>,
+    pub functions: Followed<Functions>,
 }
 
 impl Rules {
@@ -74,7 +75,24 @@ impl Rules {
 
     /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
     pub const fn promotes_integers(&self) -> bool {
-        matches!(self.narrow_integers.choice, NarrowIntegers::At32Bits)
+        matches!(self.narrow_integers.choice, NarrowIntegers::At32Bits | NarrowIntegers::AsCPromotes)
+    }
+
+    /// Bit strings are promoted as well, and a function takes and gives values of its own type, which are cut.
+    pub const fn promotes_as_c(&self) -> bool {
+        matches!(self.narrow_integers.choice, NarrowIntegers::AsCPromotes)
+    }
+
+    pub const fn has_functions_of_matiec(&self) -> bool {
+        matches!(self.functions.choice, Functions::OfMatiec)
+    }
+
+    pub const fn time_is_seconds(&self) -> bool {
+        matches!(self.time_as_number.choice, TimeAsNumber::Seconds)
+    }
+
+    pub const fn rounds_to_lint(&self) -> bool {
+        matches!(self.real_to_integer.choice, RealToInteger::LowBitsOfLint)
     }
 
     pub const fn keeps_sign(&self) -> bool {
@@ -108,6 +126,7 @@ trait Choice: Copy {
 pub enum NarrowIntegers {
     AtTheirType,
     At32Bits,
+    AsCPromotes,
 }
 
 impl Choice for NarrowIntegers {
@@ -117,6 +136,7 @@ impl Choice for NarrowIntegers {
         match self {
             Self::AtTheirType => "at their type",
             Self::At32Bits => "at 32 bits",
+            Self::AsCPromotes => "at 32 bits by operators, at their type by functions",
         }
     }
 }
@@ -126,6 +146,7 @@ impl Choice for NarrowIntegers {
 pub enum RealToInteger {
     Saturates,
     LowBits,
+    LowBitsOfLint,
 }
 
 impl Choice for RealToInteger {
@@ -135,6 +156,7 @@ impl Choice for RealToInteger {
         match self {
             Self::Saturates => "the nearest value of the type",
             Self::LowBits => "the low bits of the whole number",
+            Self::LowBitsOfLint => "the low bits of a LINT; 0 for an unsigned type and a negative value",
         }
     }
 }
@@ -161,6 +183,7 @@ pub enum ByZero {
     Faults,
     /// The result is the dividend.
     Reported,
+    GivesZero,
 }
 
 impl ByZero {
@@ -168,6 +191,7 @@ impl ByZero {
         match self {
             Self::Faults => "a fault",
             Self::Reported => "the dividend; of integers, it is reported",
+            Self::GivesZero => "0",
         }
     }
 }
@@ -195,6 +219,7 @@ impl Choice for ShrOfSigned {
 pub enum TimeAsNumber {
     Milliseconds,
     WholeMilliseconds,
+    Seconds,
 }
 
 impl Choice for TimeAsNumber {
@@ -204,6 +229,7 @@ impl Choice for TimeAsNumber {
         match self {
             Self::Milliseconds => "milliseconds",
             Self::WholeMilliseconds => "milliseconds; of a REAL whole ones",
+            Self::Seconds => "seconds",
         }
     }
 }
@@ -231,6 +257,7 @@ impl Choice for RealAndBits {
 pub enum DefaultString {
     Holds80,
     Holds82,
+    Holds126,
     Holds254,
 }
 
@@ -239,6 +266,7 @@ impl DefaultString {
         match self {
             Self::Holds80 => 80,
             Self::Holds82 => 82,
+            Self::Holds126 => 126,
             Self::Holds254 => 254,
         }
     }
@@ -251,6 +279,7 @@ impl Choice for DefaultString {
         match self {
             Self::Holds80 => "80 characters",
             Self::Holds82 => "82 characters",
+            Self::Holds126 => "126 characters",
             Self::Holds254 => "254 characters",
         }
     }
@@ -382,6 +411,24 @@ impl Choice for RotatedConstant {
     }
 }
 
+/// Which library the standard functions are of, where the standard leaves an edge open or a library departs from it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Functions {
+    OfTheStandard,
+    OfMatiec,
+}
+
+impl Choice for Functions {
+    const RULE: &'static str = "standard functions";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::OfTheStandard => "as the standard",
+            Self::OfMatiec => "as MATIEC's library",
+        }
+    }
+}
+
 const IEC: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::AtTheirType, "IEC 61131-3, 6.6.2.5.4: a result has its operands' type"),
     real_to_integer: follows(RealToInteger::Saturates, "IEC 61131-3, table 22: left to the implementer"),
@@ -400,6 +447,7 @@ const IEC: Rules = Rules {
     sqrt_of_negative: follows(SqrtOfNegative::NotANumber, "IEC 60559, as IEC 61131-3 has REAL"),
     modulo_of_reals: follows(ModuloOfReals::Refused, "IEC 61131-3, table 29: of ANY_INT"),
     rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page says it"),
+    functions: follows(Functions::OfTheStandard, "IEC 61131-3, 6.6.2.5"),
 };
 
 const CSCAPE: Rules = Rules { default_string: follows(DefaultString::Holds80, "no page says it; as CODESYS"), ..IEC };
@@ -415,7 +463,21 @@ const CODESYS: Rules = Rules {
     ..IEC
 };
 
-const OPENPLC: Rules = IEC;
+/// MATIEC's C, as gcc compiles it for x86-64: programs were compiled by it and run.
+const OPENPLC: Rules = Rules {
+    narrow_integers: follows(NarrowIntegers::AsCPromotes, MATIEC),
+    real_to_integer: follows(RealToInteger::LowBitsOfLint, MATIEC),
+    integer_to_bool: follows(ToBool::NotZero, MATIEC),
+    bits_to_bool: follows(ToBool::NotZero, MATIEC),
+    modulo_by_zero: follows(ByZero::GivesZero, MATIEC),
+    time_as_number: follows(TimeAsNumber::Seconds, MATIEC),
+    default_string: follows(DefaultString::Holds126, MATIEC),
+    functions: follows(Functions::OfMatiec, MATIEC),
+    ..IEC
+};
+
+/// The compiler whose programs were run, by its commit.
+const MATIEC: &str = "thiagoralves/matiec f9ca9ba, run";
 
 const OPENPLC4: Rules = Rules {
     narrow_integers: follows(
@@ -497,6 +559,7 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.sqrt_of_negative),
         row(|it| &it.modulo_of_reals),
         row(|it| &it.rotated_constant),
+        row(|it| &it.functions),
     ]
 }
 

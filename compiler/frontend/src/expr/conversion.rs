@@ -69,6 +69,7 @@ impl<'s> Checker<'_, 's> {
     /// What a TIME carries and numbers meet at the unit in which such numbers count.
     pub(super) fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
         let target = Type::Elementary(to);
+        let rules = self.decl.dialect(span).rules();
         if from.is_char() || to.is_char() {
             return self.character_and_number(value, from, to, span);
         }
@@ -79,10 +80,17 @@ impl<'s> Checker<'_, 's> {
                 self.as_time(nanoseconds, to, span)
             }
             (None, None) if to == Elementary::Bool => self.truth(value, from, span),
-            (None, None) if are_the_same_bits(from, to) && self.decl.dialect(span).rules().copies_bits() => {
+            (None, None) if are_the_same_bits(from, to) && rules.copies_bits() => {
                 Some(self.convert(Conversion::Bits, target, value))
             }
+            (None, None) if from.is_real() && !to.is_real() && rules.rounds_to_lint() => {
+                let op = if to.repr().is_unsigned() { Op::RoundToUlint } else { Op::RoundToLint };
+                let lint = self.apply(op, value.ty, vec![value], Type::LINT, span)?;
+                Some(self.convert(Conversion::Value, target, lint))
+            }
             (None, None) => Some(self.number_as(value, to, span)),
+            (Some(_), None) if rules.time_is_seconds() => self.seconds(value, to, span),
+            (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
             (Some(unit), None) => {
                 let (unit, since) = self.counts_from(from, unit, span);
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
@@ -125,6 +133,34 @@ impl<'s> Checker<'_, 's> {
             false => value,
         };
         self.convert(Conversion::Value, Type::Elementary(to), value)
+    }
+
+    /// A TIME, or a point in time, as its seconds: whole ones, or with a fraction as a real. A BOOL is whether it is not 0.
+    fn seconds(&mut self, value: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+        if to == Elementary::Bool {
+            return Some(self.convert(Conversion::Value, Type::BOOL, nanoseconds));
+        }
+        let count = match to.is_real() {
+            true => self.apply(Op::SecondsOf, Type::LINT, vec![nanoseconds], Type::LREAL, span)?,
+            false => {
+                let second = Expr::constant(Elementary::Lint, Value::I64(SECOND), nanoseconds.at);
+                self.apply(Op::Div, Type::LINT, vec![nanoseconds, second], Type::LINT, span)?
+            }
+        };
+        Some(self.convert(Conversion::Value, Type::Elementary(to), count))
+    }
+
+    /// Seconds, of which 32 bits are kept, as a TIME or a point in time.
+    fn time_of_seconds(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
+        let nanoseconds = if from.is_real() {
+            self.apply(Op::TimeOfSeconds, value.ty, vec![value], Type::LINT, span)?
+        } else {
+            let seconds = self.convert(Conversion::Value, Type::DINT, value);
+            let seconds = self.convert(Conversion::Value, Type::LINT, seconds);
+            self.scaled_by(Op::Mul, seconds, SECOND, false, span)?
+        };
+        self.as_time(nanoseconds, to, span)
     }
 
     /// A number as a BOOL, as the dialect's rule for its class says; a real is TRUE where it is not 0.

@@ -3,6 +3,7 @@
 use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
+use crate::dialect::rules::ByZero;
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
@@ -116,7 +117,8 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
         };
-        let ty = if dialect.rules().promotes_integers() { promoted(&sides, own) } else { own };
+        let rules = dialect.rules();
+        let ty = if rules.promotes_integers() { promoted(&sides, own, rules.promotes_as_c()) } else { own };
         let a = self.side(sides.a, ty, sides.left)?;
         let b = self.side(sides.b, ty, sides.right)?;
         Some(Meeting { ty: Type::Elementary(ty), own: Type::Elementary(own), a, b })
@@ -328,7 +330,8 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let is_long = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && !it.is_real() && is_number(it));
-        let long = is_long(&sides.a) || is_long(&sides.b);
+        let as_c = self.decl.dialect(sides.span).rules().has_functions_of_matiec();
+        let long = is_long(&sides.a) || is_long(&sides.b) || as_c;
         let keeps_base = self.decl.dialect(sides.span).powers_have_type_of_base();
         let is_real = match sides.a.ty() {
             Some(ty) => keeps_base && ty == REAL,
@@ -385,6 +388,8 @@ impl<'s> Checker<'_, 's> {
             "both sides need to be numbers"
         };
         let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
+        let zero = self.decl.dialect(op_span).rules().modulo_by_zero.choice == ByZero::GivesZero;
+        let op = if op == Op::Mod && zero { Op::ModOrZero } else { op };
         let value = match op == Op::Mod && ty.elementary().is_some_and(Elementary::is_real) {
             true => self.remainder(ty, a, b, op_span)?,
             false if matches!(op, Op::Div | Op::Mod) => self.divided(op, ty, (a, b), op_span)?,
@@ -446,6 +451,13 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
         };
+        if self.decl.dialect(span).rules().time_is_seconds() {
+            let op = if op == Op::Mul { Op::TimeTimes } else { Op::TimeOver };
+            let factor = self.side(sides.b, Elementary::Lreal, sides.right)?;
+            let lint = self.convert(Conversion::Same, Type::LINT, time);
+            let scaled = self.apply(op, Type::LINT, vec![lint, factor], Type::LINT, op_span)?;
+            return Some(self.convert(Conversion::Same, ty, scaled));
+        }
         if integer {
             let count = self.side(sides.b, Elementary::Lint, sides.right)?;
             if let (Some(Value::I64(a)), Some(Value::I64(b)), Op::Mul) = (time.as_const(), count.as_const(), op) {
@@ -576,10 +588,11 @@ fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> O
 }
 
 /// The type at which sides are computed that give one of `own`, where integers are promoted.
-fn promoted(sides: &Sides, own: Elementary) -> Elementary {
-    let calculates = matches!(sides.op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod);
-    // A promoted value may be negative: it is compared with a UDINT by what it is.
-    let compared = compares(sides.op) && as_number(own) == Elementary::Udint;
+fn promoted(sides: &Sides, own: Elementary, as_c: bool) -> Elementary {
+    let calculates = matches!(sides.op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod)
+        || as_c && is_junction(sides.op);
+    // A promoted value may be negative: it is compared with a UDINT by what it is. C makes a UDINT of it.
+    let compared = compares(sides.op) && as_number(own) == Elementary::Udint && !as_c;
     if !is_narrow(own) && !compared {
         return own;
     }

@@ -323,7 +323,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Type {
         let Type::Elementary(it) = own else { return own };
-        if class == Class::Bit || !self.promotes(it, span) {
+        if class == Class::Bit || !self.promotes_in_functions(it, span) {
             return own;
         }
         // What is narrow has its value at a DINT, whatever its sign.

@@ -11,6 +11,11 @@ impl Checker<'_, '_> {
         is_narrow(ty) && self.decl.dialect(span).rules().promotes_integers()
     }
 
+    /// Whether functions, too, compute values of this type at DINT.
+    pub(crate) fn promotes_in_functions(&self, ty: Elementary, span: Span) -> bool {
+        self.promotes(ty, span) && !self.decl.dialect(span).rules().promotes_as_c()
+    }
+
     /// The value at DINT, where the dialect computes those of its type there.
     pub(crate) fn promote(&mut self, value: Expr, span: Span) -> Expr {
         match value.ty {

@@ -11,8 +11,8 @@ use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
-    Arm, Block, Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Statement, StatementKind, StringType, TextOp,
-    Type, Value,
+    Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind,
+    StringType, TextOp, Type, Value,
 };
 use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
@@ -150,7 +150,7 @@ impl<'s> Checker<'_, 's> {
         Resolved { mut ty, own, mut operands }: Resolved,
         span: Span,
     ) -> Option<Operand> {
-        if op == Op::Abs {
+        if op == Op::Abs && own.elementary().is_some_and(|it| self.promotes_in_functions(it, span)) {
             operands = operands.into_iter().map(|it| self.promote(it, span)).collect();
             ty = operands.first()?.ty;
         }
@@ -158,7 +158,15 @@ impl<'s> Checker<'_, 's> {
             operands =
                 operands.into_iter().map(|it| self.apply(Op::Abs, ty, vec![it], ty, span)).collect::<Option<_>>()?;
         }
+        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
         let value = match (op, ty) {
+            (Op::Limit, Type::Elementary(_)) if matiec => self.apply(Op::LimitLow, ty, operands, ty, span),
+            (_, Type::Elementary(Elementary::Real)) if matiec && is_of_math(op) => {
+                let operands =
+                    operands.into_iter().map(|it| self.convert(Conversion::Value, Type::LREAL, it)).collect();
+                let value = self.apply(op, Type::LREAL, operands, Type::LREAL, span)?;
+                Some(self.convert(Conversion::Value, ty, value))
+            }
             (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
             (Op::Max | Op::Min, _) => self.fold(op, ty, operands, span),
             (Op::Limit, Type::String(_)) => self.limited_text(ty, operands, span),
@@ -307,7 +315,15 @@ impl<'s> Checker<'_, 's> {
             Arm { labels: vec![(number, number)], body }
         };
         let mut arms: Vec<_> = (0..).zip(inputs).map(arm).collect();
-        let mut outside = vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)];
+        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let zero =
+            self.decl.program.repr(ty).filter(|_| matiec).map(|it| Expr::new(ty, ExprKind::Const(it.zero()), at));
+        let text = matiec && matches!(ty, Type::String(_));
+        let mut outside = match zero {
+            Some(zero) => vec![Statement::assign(result.clone(), zero, at)],
+            None if text => vec![Statement::assign(result.clone(), empty_text(ty, at), at)],
+            None => vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)],
+        };
         if chooses {
             let (least, most) = self.decl.program.repr(selector.ty).and_then(Repr::range)?;
             let last = arms.last_mut()?;
@@ -346,6 +362,11 @@ impl<'s> Checker<'_, 's> {
         if op == TextOp::Concat {
             return self.concat(operands, span);
         }
+        let op = match op {
+            TextOp::Find if self.decl.dialect(span).rules().has_functions_of_matiec() => TextOp::FindOrEnd,
+            TextOp::Replace if self.decl.dialect(span).rules().has_functions_of_matiec() => TextOp::ReplaceUpTo,
+            _ => op,
+        };
         let mut ready = Vec::new();
         for (operand, repr) in operands.into_iter().zip(op.operands()) {
             ready.push(if repr.is_some() { self.count(operand)? } else { operand });
@@ -392,6 +413,17 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
+fn empty_text(ty: Type, at: Location) -> Expr {
+    Expr::convert(Conversion::Value, ty, Expr::new(Type::string(0), ExprKind::Text(Chars::Narrow(Vec::new())), at), at)
+}
+
+/// The functions of `math.h`, which compute at LREAL.
+fn is_of_math(op: Op) -> bool {
+    const OF_MATH: [Op; 10] =
+        [Op::Sqrt, Op::Ln, Op::Log, Op::Exp, Op::Sin, Op::Cos, Op::Tan, Op::Asin, Op::Acos, Op::Atan];
+    OF_MATH.contains(&op)
+}
+
 fn is_wide(ty: Type) -> bool {
     matches!(ty, Type::Elementary(Elementary::Ulint | Elementary::Lword))
 }
@@ -419,7 +451,7 @@ fn joined(a: StringType, b: StringType) -> StringType {
 fn made_by(op: TextOp, operands: &[Expr]) -> Option<StringType> {
     let own = operands.first()?.ty.string_type()?;
     Some(match op {
-        TextOp::Insert | TextOp::Replace => joined(own, operands.get(1)?.ty.string_type()?),
+        TextOp::Insert | TextOp::Replace | TextOp::ReplaceUpTo => joined(own, operands.get(1)?.ty.string_type()?),
         _ => own,
     })
 }

@@ -8,7 +8,9 @@ impl Checker<'_, '_> {
     /// `a < b` and its kin, byte by byte.
     pub(crate) fn compare_texts(&mut self, op: Op, a: Expr, b: Expr, span: Span) -> Option<Expr> {
         let at = self.at(span);
-        let order = Expr::new(Type::INT, ExprKind::ApplyText(TextOp::Compare, vec![a, b]), at);
+        let starts = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let compare = if starts { TextOp::CompareStart } else { TextOp::Compare };
+        let order = Expr::new(Type::INT, ExprKind::ApplyText(compare, vec![a, b]), at);
         let order = self.evaluated(order, span)?;
         let zero = Expr::constant(Elementary::Int, Value::I16(0), at);
         self.apply(op, Type::INT, vec![order, zero], Type::BOOL, span)

@@ -29,11 +29,16 @@ impl<'s> Checker<'_, 's> {
             return self.name_of(value, id, span, name);
         }
         let (value, ty) = self.as_elementary(value, span, name)?;
+        let matiec = self.decl.dialect(name.span).rules().has_functions_of_matiec();
         let (op, operand, longest) = match ty {
             Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
+            Elementary::Real | Elementary::Lreal if matiec => (TextOp::FromGeneral, Elementary::Lreal, 17),
             Elementary::Real => (TextOp::FromReal, Elementary::Real, 16),
             Elementary::Lreal => (TextOp::FromLreal, Elementary::Lreal, 24),
+            Elementary::Lword if matiec => (TextOp::FromBits, Elementary::Ulint, 19),
             Elementary::Ulint | Elementary::Lword => (TextOp::FromUlint, Elementary::Ulint, 20),
+            _ if ty.is_time() && matiec => (TextOp::FromSeconds, Elementary::Lint, 40),
+            _ if ty.is_bits() && matiec => (TextOp::FromBits, Elementary::Ulint, 19),
             _ if ty.is_time() => (TextOp::FromTime, Elementary::Lint, 40),
             _ => (TextOp::FromLint, Elementary::Lint, 20),
         };
@@ -128,6 +133,9 @@ impl<'s> Checker<'_, 's> {
             return self.first_character(text, to, span);
         }
         let is_fixed = self.decl.dialect(span).rules().reads_fixed_point();
+        if self.decl.dialect(span).rules().has_functions_of_matiec() {
+            return self.value_of_text_in_openplc(text, to, span);
+        }
         let (op, made) = match to {
             Elementary::Bool => (TextOp::ToBool, Elementary::Bool),
             Elementary::Real if is_fixed => (TextOp::ToFixedReal, Elementary::Real),
@@ -145,6 +153,22 @@ impl<'s> Checker<'_, 's> {
             value = self.zero_outside(value, to, span)?;
         }
         Some(self.convert(Conversion::Value, Type::Elementary(to), value))
+    }
+
+    /// A TIME is as many seconds as the number of the text has whole ones.
+    fn value_of_text_in_openplc(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let (op, made) = match to {
+            Elementary::Bool => (TextOp::ToBoolWord, Elementary::Bool),
+            _ if to.is_real() || to.is_time() => (TextOp::ToLrealDot, Elementary::Lreal),
+            _ => (TextOp::ToLintBack, Elementary::Lint),
+        };
+        let operands = vec![self.of_kind(text, false, span)?];
+        let value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
+        if !to.is_time() {
+            return Some(self.convert(Conversion::Value, Type::Elementary(to), value));
+        }
+        let whole = self.convert(Conversion::Truncate, Type::LINT, value);
+        self.between(whole, Elementary::Lint, to, span)
     }
 
     /// What the text spells, or 0 where the type does not hold that.
@@ -233,7 +257,7 @@ impl<'s> Checker<'_, 's> {
 
     /// The number of a type among all, for the two functions that want it.
     fn kind_of_time(&mut self, op: TextOp, ty: Elementary, span: Span) -> Option<Expr> {
-        if !matches!(op, TextOp::FromTime | TextOp::ToTime) {
+        if !matches!(op, TextOp::FromTime | TextOp::ToTime | TextOp::FromSeconds) {
             return None;
         }
         let number = Elementary::ALL.iter().position(|it| *it == ty)?;

@@ -16,6 +16,9 @@ impl<'s> Checker<'_, 's> {
         expected: Option<Type>,
         name: ast::Name<'s>,
     ) -> Option<Operand> {
+        if self.decl.dialect(name.span).rules().promotes_as_c() {
+            return self.cut_at_its_type(operator, values, expected, name);
+        }
         if compares(operator) && values.len() > 2 {
             return self.comparisons(operator, values, name);
         }
@@ -45,6 +48,23 @@ impl<'s> Checker<'_, 's> {
         let hint = expected.filter(|_| !compares(op));
         let operands = self.as_written(values, |this, at, side| this.operand(values[at], hint.or(side)))?;
         self.fold_left(op, operands, values, hint, name)
+    }
+
+    /// As a C function of its type: what it is given is cut, and what it gives.
+    fn cut_at_its_type(
+        &mut self,
+        op: BinaryOp,
+        values: &[&ast::Expr<'s>],
+        expected: Option<Type>,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        if compares(op) && values.len() > 2 {
+            return self.comparisons(op, values, name);
+        }
+        let hint = expected.filter(|_| !compares(op));
+        let operands =
+            self.as_written(values, |this, at, side| Some(this.operand(values[at], hint.or(side))?.cut()))?;
+        Some(self.fold_left(op, operands, values, hint, name)?.cut())
     }
 
     /// An operator on operands of the values, from the left.

@@ -52,6 +52,7 @@ pub(crate) type Join = fn(Elementary, Elementary) -> Option<Elementary>;
 pub(crate) fn join_in(dialect: Dialect) -> Join {
     match dialect {
         Dialect::Logix => join_in_logix,
+        _ if dialect.rules().promotes_as_c() => join,
         _ if dialect.rules().promotes_integers() => join_promoted,
         _ => join,
     }

@@ -1,11 +1,12 @@
 //! OpenPLC v3, OpenPLC Editor and Beremiz, whose library is MATIEC's. Its counters are those of
 //! [`iec`](super::iec) but for one rule: an edge counts up only while `cv < pv`, and down only
 //! while `cv > 0`, as the count was before the call. A count that is beyond already stays. Its
-//! `F_TRIG` is the second edition's text, which sees an edge in a first call with FALSE.
+//! timers look at the time in the call after they start. Its `F_TRIG` before 2024-12 is the second
+//! edition's text, which sees an edge in a first call with FALSE.
 
 use super::iec::Count;
-use crate::Context;
 use crate::block::pins;
+use crate::{Context, Time};
 
 /// `CTU`: counts up on each rising edge of `cu` while `cv < pv`; `q` while `cv >= pv`. Reset wins
 /// over counting.
@@ -146,7 +147,112 @@ pins!([T: Count] Ctud<T> {
     Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before" }
 });
 
-/// `F_TRIG`: `q` in the call in which `clk` becomes FALSE, and in a first call in which it is FALSE: what is
+macro_rules! timers {
+    ($($(#[$doc:meta])* $timer:ident $step:ident;)*) => { $(
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        pub struct $timer {
+            pub in_: bool,
+            pub pt: Time,
+            pub q: bool,
+            pub et: Time,
+            /// Memory: `in_` in the last call.
+            pub in_before: bool,
+            /// Memory: it runs.
+            pub runs: bool,
+            /// Memory: it has run.
+            pub over: bool,
+            /// Memory: when it started.
+            pub start: Time,
+        }
+
+        impl $timer {
+            /// One call: sets the inputs and measures.
+            #[inline]
+            pub fn call(&mut self, in_: bool, pt: Time, cx: &Context) {
+                (self.in_, self.pt) = (in_, pt);
+                self.step(cx);
+            }
+
+            /// One call with the inputs as they are.
+            #[inline]
+            pub fn step(&mut self, cx: &Context) {
+                let is_idle = !self.runs & !self.over;
+                self.$step(is_idle, cx.now());
+                self.in_before = self.in_;
+            }
+
+            /// What a call does while it runs: whether it has run for `pt`. A negative `pt` has passed.
+            #[inline]
+            fn measure(&mut self, now: Time) {
+                self.over = self.start.saturating_add(self.pt) <= now;
+                self.runs = !self.over;
+                self.et = if self.over { self.pt } else { now.wrapping_sub(self.start) };
+            }
+        }
+
+        pins!([] $timer {
+            Input { in_: BOOL = "IN", pt: TIME = "PT" }
+            Output { q: BOOL = "Q", et: TIME = "ET" }
+            Memory { in_before: BOOL = "in_before", runs: BOOL = "runs", over: BOOL = "over", start: TIME = "start" }
+        });
+    )* };
+}
+
+timers! {
+    /// `TON`: `q` once `in_` has been TRUE for `pt`, in a call after the one with the rise: with a `pt` of 0, in the second.
+    Ton on;
+    /// `TOF`: `q` while `in_`, and for `pt` after it falls, the call with the fall always among it.
+    Tof off;
+    /// `TP`: a rise gives a pulse of `pt`, the call with the rise always among it.
+    Tp pulse;
+}
+
+impl Ton {
+    #[inline]
+    fn on(&mut self, is_idle: bool, now: Time) {
+        if is_idle & !self.in_before & self.in_ {
+            (self.runs, self.q, self.start) = (true, false, now);
+        } else if !self.in_ {
+            (self.runs, self.over, self.q, self.et) = (false, false, false, 0);
+        } else if self.runs {
+            self.measure(now);
+            self.q = self.over;
+        }
+    }
+}
+
+impl Tof {
+    #[inline]
+    fn off(&mut self, is_idle: bool, now: Time) {
+        if is_idle & self.in_before & !self.in_ {
+            (self.runs, self.start) = (true, now);
+        } else if self.in_ {
+            (self.runs, self.over, self.et) = (false, false, 0);
+        } else if self.runs {
+            self.measure(now);
+        }
+        self.q = self.in_ | self.runs;
+    }
+}
+
+impl Tp {
+    #[inline]
+    fn pulse(&mut self, is_idle: bool, now: Time) {
+        if is_idle & !self.in_before & self.in_ {
+            (self.runs, self.q, self.start) = (true, true, now);
+        } else if self.runs {
+            self.measure(now);
+            self.q = self.runs;
+        }
+        if self.over & !self.in_ {
+            (self.over, self.et) = (false, 0);
+        }
+    }
+}
+
+/// `F_TRIG` before 2024-12: `q` in the call in which `clk` becomes FALSE, and in a first call in which it is FALSE: what is
 /// remembered is `NOT clk`, which starts as FALSE (IEC 61131-3, second edition, 2.5.2.3.2).
 ///
 /// ```

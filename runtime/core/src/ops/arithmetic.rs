@@ -54,6 +54,18 @@ pub fn modulo<T: Integer>(a: T, b: T) -> Result<T, FaultKind> {
     a.remainder(b)
 }
 
+/// [`modulo`] of OpenPLC, where the remainder of a division by zero is 0.
+///
+/// ```
+/// use staunch_runtime::ops::modulo_or_zero;
+/// assert_eq!(modulo_or_zero(-7_i16, 2), -1);
+/// assert_eq!(modulo_or_zero(7_i16, 0), 0);
+/// ```
+#[inline]
+pub fn modulo_or_zero<T: Integer>(a: T, b: T) -> T {
+    a.remainder(b).unwrap_or(T::ZERO)
+}
+
 /// `-value`. Integers wrap: `-MIN` is `MIN`, and an unsigned value becomes its two's complement.
 /// For reals the sign flips, also that of zero and NaN.
 #[inline]

@@ -13,6 +13,7 @@ mod select;
 mod convert;
 mod dates;
 mod index;
+mod matiec;
 mod step;
 
 pub use arithmetic::*;
@@ -23,5 +24,6 @@ pub use convert::*;
 pub use dates::*;
 pub use index::*;
 pub use math::*;
+pub use matiec::*;
 pub use select::*;
 pub use step::*;

@@ -55,6 +55,9 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
+    if settings.options.f_trig_before_2024_12 || settings.options.dialect == Dialect::Openplc {
+        return Ok(Verdict::Rejected("values of MATIEC's C".to_owned()));
+    }
     // The witness knows families, and SCL is of none.
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
     if settings.options.dialect == Dialect::Siemens && (has("**") || has("_TO_STRING")) {
