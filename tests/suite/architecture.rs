@@ -45,6 +45,7 @@ const UNSAFE: &[&str] = &[
     "runtime/abi/",
     "runtime/host/src/allocations.rs",
     "runtime/host/src/compiled.rs",
+    "runtime/host/src/retain/lock.rs",
     "runtime/host/src/signal.rs",
     "runtime/host/src/terminal.rs",
     "compiler/native/src/jit.rs",

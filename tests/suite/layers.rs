@@ -40,8 +40,8 @@ const LAYERS: [&str; 27] = [
 
 /// The folder of the command line that is layers, and its folders from the lowest.
 const COMPARE: &str = "compare";
-const COMPARE_LAYERS: [&str; 9] =
-    ["other", "program", "pair", "inputs", "difference", "search", "findings", "verdict", "report"];
+const COMPARE_LAYERS: [&str; 10] =
+    ["other", "program", "pair", "variants", "inputs", "difference", "search", "findings", "verdict", "report"];
 
 /// The crates whose modules import one another in no circle, and what is divided into a few files that do.
 const CIRCLES: [(&str, &[&[&str]]); 6] = [

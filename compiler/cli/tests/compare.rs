@@ -207,7 +207,9 @@ END_PROGRAM
     let out = text(&run(&format!("{} --from iec --to cscape --budget 2000", path.display())).stdout);
     assert_eq!(out.matches("it is never called").count(), 1, "{out}");
     assert!(
-        out.contains("`idle`\n  impossible: trap 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15: it is never"),
+        out.contains(
+            "`idle`\n  impossible: trap 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 17, 18: it is never"
+        ),
         "{out}"
     );
 }

@@ -37,8 +37,8 @@ use search::tolerance::Tolerance;
 use search::world::World;
 use staunch_frontend::Dialect;
 use staunch_ir::Program;
-use variants::{Other, Variant};
-use verdict::{Judged, Verdict, WithoutRun, judge};
+use variants::Variant;
+use verdict::{Judged, Other, Verdict, WithoutRun, judge};
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
@@ -101,8 +101,8 @@ struct Compared {
 }
 
 impl Compared {
-    fn weight(&self) -> variants::Weight {
-        variants::weight(&self.verdict, self.rest.as_ref())
+    fn weight(&self) -> verdict::Weight {
+        verdict::weight(&self.verdict, self.rest.as_ref())
     }
 }
 

@@ -2,7 +2,6 @@
 //! verdict rests on one of them alone.
 
 use super::pair::Pair;
-use super::verdict::Verdict;
 use crate::session::Session;
 use staunch_build::Project;
 use staunch_frontend::{OPEN_OPTIONS, OpenOption, Options, Sources};
@@ -15,14 +14,6 @@ const MAX_OPTIONS: usize = 3;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variant {
     settings: Vec<(usize, bool)>,
-}
-
-/// What a variant that is not shown came to.
-#[derive(Debug)]
-pub struct Other {
-    pub variant: Variant,
-    pub verdict: &'static str,
-    pub scans: Option<usize>,
 }
 
 impl Variant {
@@ -87,49 +78,5 @@ impl Variant {
             format!("{}:{}", quoted(row.name), if plain { setting.to_owned() } else { quoted(setting) })
         };
         format!("{{{}}}", self.rows().map(pair).collect::<Vec<_>>().join(","))
-    }
-}
-
-impl Other {
-    pub fn of(variant: Variant, verdict: &Verdict, rest: Option<&Verdict>) -> Self {
-        let scans = match verdict {
-            Verdict::Differs { rows, .. } => Some(rows.len()),
-            Verdict::Equal(_) | Verdict::NotFound { .. } => None,
-        };
-        let verdict = match (weight(verdict, rest), scans) {
-            (Weight::Equal, None) => "equal",
-            (Weight::Equal, Some(_)) => "equal beyond what is accepted",
-            (Weight::NotFound, _) => "not found",
-            (Weight::Differs, _) => "different",
-        };
-        Self { variant, verdict, scans }
-    }
-
-    /// As the end of a sentence.
-    pub fn words(&self) -> String {
-        match (self.verdict, self.scans) {
-            ("different", Some(1)) => "the two differ after 1 scan".to_owned(),
-            ("different", Some(scans)) => format!("the two differ after {scans} scans"),
-            ("not found", _) => "no difference was found, and none is ruled out".to_owned(),
-            ("rejected", _) => "one of the two systems rejects the program".to_owned(),
-            (other, _) => format!("the two are {other}"),
-        }
-    }
-}
-
-/// How much a verdict asks for, the least first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Weight {
-    Equal,
-    NotFound,
-    Differs,
-}
-
-/// Of a verdict, and of what the search beyond accepted findings came to.
-pub fn weight(verdict: &Verdict, rest: Option<&Verdict>) -> Weight {
-    match (verdict, rest) {
-        (Verdict::Differs { .. }, None | Some(Verdict::Differs { .. })) => Weight::Differs,
-        (Verdict::NotFound { .. }, _) | (Verdict::Differs { .. }, Some(Verdict::NotFound { .. })) => Weight::NotFound,
-        (Verdict::Equal(_), _) | (Verdict::Differs { .. }, Some(Verdict::Equal(_))) => Weight::Equal,
     }
 }

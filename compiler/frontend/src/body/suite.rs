@@ -229,17 +229,17 @@ impl<'s> Checker<'_, 's> {
         Some(Claim::of(holds, "to be {}", actual, expected))
     }
 
-    /// `NOT (ABS(expected - actual) > delta)`
+    /// `expected = actual OR ABS(expected - actual) <= delta`: what is not a number is near nothing, and infinity is itself.
     fn within(&mut self, ty: Elementary, [expected, actual, delta]: [&ast::Expr<'s>; 3], span: Span) -> Option<Claim> {
         let ty = Type::Elementary(ty);
         let [(a, wanted), (b, found)] = self.values_of(ty, [expected, actual])?;
         let limit = self.value(delta, ty)?;
         let (limit, tolerance) = self.keep("tolerance", limit, delta.span)?;
+        let is_same = self.apply(Op::Eq, ty, vec![a.clone(), b.clone()], Type::BOOL, span)?;
         let difference = self.apply(Op::Sub, ty, vec![a, b], ty, span)?;
         let distance = self.apply(Op::Abs, ty, vec![difference], ty, span)?;
-        let is_far = self.apply(Op::Gt, ty, vec![distance, limit], Type::BOOL, span)?;
-        let at = self.at(span);
-        let holds = Expr::apply(Op::Not, Type::BOOL, vec![is_far], at);
+        let is_near = self.apply(Op::Le, ty, vec![distance, limit], Type::BOOL, span)?;
+        let holds = self.apply(Op::Or, Type::BOOL, vec![is_same, is_near], Type::BOOL, span)?;
         Some(Claim { tolerance: Some(tolerance), ..Claim::of(holds, WITHIN, found, wanted) })
     }
 

@@ -454,6 +454,7 @@ impl<'s> Declarations<'s> {
             ast::Edge::Falling => "F_TRIG",
         };
         let block = dialect::bare_block(self.dialect(span), name_of_block)?;
+        let block = dialect::as_options_have_it(block, |it| self.log.options.is_on(it));
         let id = FieldId::next(builder.fields.len());
         builder.fields.push(Field {
             name: format!("{}_edge", name.text),

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
-/// The lock of a file, as long as it is held. `None` where the folder takes no new file, or the system has no locks.
+/// The lock of a file, as long as it is held. `None` where the folder does not exist or takes no new file: saving reports that.
 pub(super) fn take(path: &Path) -> io::Result<Option<File>> {
     let mut name = OsString::from(".");
     name.push(path.file_name().unwrap_or_default());
@@ -14,7 +14,6 @@ pub(super) fn take(path: &Path) -> io::Result<Option<File>> {
     let opened = File::options().create(true).truncate(false).write(true).open(path.with_file_name(name));
     match opened {
         Ok(file) => lock(&file).map(|()| Some(file)),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => Err(error),
         Err(_) => Ok(None),
     }
 }

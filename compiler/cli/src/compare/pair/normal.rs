@@ -12,6 +12,8 @@ pub struct Timer {
     input_before: usize,
     output: usize,
     start: usize,
+    /// Of a timer that remembers whether it runs.
+    runs: Option<usize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +21,7 @@ enum Kind {
     OnDelay,
     OffDelay,
     Pulse,
+    Running,
     /// A block that takes the time and is none of these: its start always matters.
     Other,
 }
@@ -34,11 +37,13 @@ impl Timer {
             "iec::Ton" | "openplc4::Ton" => Kind::OnDelay,
             "iec::Tof" | "openplc4::Tof" => Kind::OffDelay,
             "iec::Tp" | "openplc4::Tp" => Kind::Pulse,
+            "openplc::Ton" | "openplc::Tof" | "openplc::Tp" => Kind::Running,
             _ => Kind::Other,
         };
         let at = |it: &'static Pin| instance.offset + it.offset;
         let pin = |name: &str| info.pin(name).map(at);
-        Some(Self { kind, input_before: pin("in_before")?, output: pin("Q")?, start: pin("start")? })
+        let (input_before, output, start) = (pin("in_before")?, pin("Q")?, pin("start")?);
+        Some(Self { kind, input_before, output, start, runs: pin("runs") })
     }
 
     /// Whether the next calls measure from `start`, as the blocks are written.
@@ -48,6 +53,7 @@ impl Timer {
             Kind::OnDelay => input && !output,
             Kind::OffDelay => output && !input,
             Kind::Pulse => output,
+            Kind::Running => self.runs.is_some_and(|at| state[at] != 0),
             Kind::Other => true,
         }
     }

@@ -7,8 +7,7 @@ use crate::compare::difference::pitfall::Cause;
 use crate::compare::findings::finding::{self, Finding, Findings};
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::search::world::World;
-use crate::compare::variants::Other;
-use crate::compare::verdict::{Judged, Verdict, stimulus};
+use crate::compare::verdict::{Judged, Other, Verdict, stimulus};
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
 

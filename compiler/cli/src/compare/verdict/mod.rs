@@ -8,7 +8,7 @@ pub mod judge;
 use crate::compare::difference::pitfall::Pitfall;
 use crate::compare::pair::Row;
 use crate::compare::search::trace::Trace;
-use crate::compare::variants::{Other, Variant};
+use crate::compare::variants::Variant;
 
 /// What the comparison came to.
 pub enum Verdict {
@@ -39,4 +39,56 @@ pub struct WithoutRun {
     pub words: String,
     pub scans: Option<usize>,
     pub pitfall: Option<Pitfall>,
+}
+
+/// What a variant that is not shown came to.
+#[derive(Debug)]
+pub struct Other {
+    pub variant: Variant,
+    pub verdict: &'static str,
+    pub scans: Option<usize>,
+}
+
+impl Other {
+    pub fn of(variant: Variant, verdict: &Verdict, rest: Option<&Verdict>) -> Self {
+        let scans = match verdict {
+            Verdict::Differs { rows, .. } => Some(rows.len()),
+            Verdict::Equal(_) | Verdict::NotFound { .. } => None,
+        };
+        let verdict = match (weight(verdict, rest), scans) {
+            (Weight::Equal, None) => "equal",
+            (Weight::Equal, Some(_)) => "equal beyond what is accepted",
+            (Weight::NotFound, _) => "not found",
+            (Weight::Differs, _) => "different",
+        };
+        Self { variant, verdict, scans }
+    }
+
+    /// As the end of a sentence.
+    pub fn words(&self) -> String {
+        match (self.verdict, self.scans) {
+            ("different", Some(1)) => "the two differ after 1 scan".to_owned(),
+            ("different", Some(scans)) => format!("the two differ after {scans} scans"),
+            ("not found", _) => "no difference was found, and none is ruled out".to_owned(),
+            ("rejected", _) => "one of the two systems rejects the program".to_owned(),
+            (other, _) => format!("the two are {other}"),
+        }
+    }
+}
+
+/// How much a verdict asks for, the least first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Weight {
+    Equal,
+    NotFound,
+    Differs,
+}
+
+/// Of a verdict, and of what the search beyond accepted findings came to.
+pub fn weight(verdict: &Verdict, rest: Option<&Verdict>) -> Weight {
+    match (verdict, rest) {
+        (Verdict::Differs { .. }, None | Some(Verdict::Differs { .. })) => Weight::Differs,
+        (Verdict::NotFound { .. }, _) | (Verdict::Differs { .. }, Some(Verdict::NotFound { .. })) => Weight::NotFound,
+        (Verdict::Equal(_), _) | (Verdict::Differs { .. }, Some(Verdict::Equal(_))) => Weight::Equal,
+    }
 }

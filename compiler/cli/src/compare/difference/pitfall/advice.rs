@@ -171,13 +171,6 @@ const BLOCKS: &[Advice] = &[
         "Find the edge yourself: `fell := before AND NOT sensor; before := sensor;`.",
     ).of(&[]),
     advice(
-        "fall from TRUE",
-        &[16],
-        &[Openplc],
-        &[Iec, Codesys, Cscape, Logix],
-        "Find the edge yourself, with `before` initially TRUE: `fell := before AND NOT sensor; before := sensor;`.",
-    ).of(&[]),
-    advice(
         "retain",
         &[11],
         &[Iec, Codesys, Openplc, Cscape, Logix],
