@@ -94,7 +94,7 @@ impl<'s> Checker<'_, 's> {
             (Some(unit), None) => {
                 let (unit, since) = self.counts_from(from, unit, span);
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
-                let nanoseconds = self.from_epoch(Op::Sub, nanoseconds, since, span)?;
+                let nanoseconds = self.since_epoch(Op::Sub, nanoseconds, since, span)?;
                 let count = self.scaled_by(Op::Div, nanoseconds, unit, to.is_real(), span)?;
                 Some(self.convert(Conversion::Value, target, count))
             }
@@ -104,7 +104,7 @@ impl<'s> Checker<'_, 's> {
                 let wide = self.convert(Conversion::Value, if real { Type::LREAL } else { Type::LINT }, value);
                 let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
-                let count = self.from_epoch(Op::Add, count, since, span)?;
+                let count = self.since_epoch(Op::Add, count, since, span)?;
                 self.as_time(count, to, span)
             }
         }
@@ -116,7 +116,7 @@ impl<'s> Checker<'_, 's> {
         if days { (DAY, staunch_runtime::time::date(1990, 1, 1)) } else { (unit, 0) }
     }
 
-    fn from_epoch(&mut self, op: Op, value: Expr, by: Time, span: Span) -> Option<Expr> {
+    fn since_epoch(&mut self, op: Op, value: Expr, by: Time, span: Span) -> Option<Expr> {
         if by == 0 {
             return Some(value);
         }
