@@ -87,17 +87,22 @@ pub fn open_at_once(path: &Path) -> io::Result<File> {
     if !fs::metadata(path).is_ok_and(|it| is_pipe(&it)) || is_straight(path) {
         return File::create(path);
     }
-    #[cfg(any(target_os = "linux", target_os = "android"))]
-    {
-        use std::os::unix::fs::OpenOptionsExt;
-        const NONBLOCK: i32 = 0o4000;
-        let opened = File::options().write(true).custom_flags(NONBLOCK).open(path);
-        return opened.map_err(|error| match error.raw_os_error() {
-            Some(6) => io::Error::other("it is a pipe that nobody reads"),
-            _ => error,
-        });
-    }
-    #[cfg(not(any(target_os = "linux", target_os = "android")))]
+    open_pipe(path)
+}
+
+#[cfg(any(target_os = "linux", target_os = "android"))]
+fn open_pipe(path: &Path) -> io::Result<File> {
+    use std::os::unix::fs::OpenOptionsExt;
+    const NONBLOCK: i32 = 0o4000;
+    let opened = File::options().write(true).custom_flags(NONBLOCK).open(path);
+    opened.map_err(|error| match error.raw_os_error() {
+        Some(6) => io::Error::other("it is a pipe that nobody reads"),
+        _ => error,
+    })
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "android")))]
+fn open_pipe(_: &Path) -> io::Result<File> {
     Err(io::Error::other("it is a pipe, which may let the program wait"))
 }
 
