@@ -207,9 +207,11 @@ impl<'a> Machine<'a> {
         let ty = value.ty.elementary().filter(|_| !values.iter().any(Value::is_text));
         match ty {
             Some(ty) => self.computed("LIMIT", ty, &[low.as_scalar()?, value.as_scalar()?, high.as_scalar()?], at),
-            None if value.as_text()? < low.as_text()? => Ok(low.clone()),
-            None if value.as_text()? > high.as_text()? => Ok(high.clone()),
-            None => Ok(value.clone()),
+            None => {
+                // MIN(MAX(IN, MN), MX)
+                let raised = if value.as_text()? < low.as_text()? { low } else { value };
+                Ok(if raised.as_text()? > high.as_text()? { high.clone() } else { raised.clone() })
+            }
         }
     }
 
@@ -311,6 +313,9 @@ impl<'a> Machine<'a> {
         asked: Option<&Type<'a>>,
         at: Span,
     ) -> Outcome<Value<'a>> {
+        if self.is_codesys() && name.starts_with("RO") && given.iter().any(|it| it.0 == 0 && untyped(it.1).is_some()) {
+            return unknown("ROL and ROR of a constant in CODESYS");
+        }
         let mut value = None;
         let mut count = None;
         for (position, expr) in given {
@@ -422,10 +427,14 @@ impl<'a> Machine<'a> {
         self.converted_by_name(&value, named(to)?, at)
     }
 
-    /// TIMEs and numbers meet at the [unit] of the TIME; of a bit string or an integer BOOL takes the rightmost bit.
+    /// TIMEs and numbers meet at the [unit] of the TIME, of which CODESYS takes whole ones; of a bit string BOOL takes the
+    /// rightmost bit, but for CODESYS; of an integer it is whether it is 0.
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
+        if to.is_date() && from.is_real() && self.is_codesys() {
+            return unknown("a REAL as a date in CODESYS");
+        }
         if from.is_date() || to.is_date() {
             return self.date_converted(value, from, to, at);
         }
@@ -437,14 +446,20 @@ impl<'a> Machine<'a> {
                 let count = self.applied("DIV", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
                 Ok(in_repr(count.as_scalar()?, to))
             }
+            (false, true) if from.is_real() && self.is_codesys() => {
+                let whole = in_repr(scalar, Elementary::Lint).as_scalar()?;
+                let factor = Scalar::I64(unit(to));
+                let count = self.applied("MUL", Elementary::Lint, &[whole, factor], at)?;
+                Ok(in_repr(count.as_scalar()?, to))
+            }
             (false, true) => {
                 let count = self.applied("MUL", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
                 Ok(in_repr(count.as_scalar()?, to))
             }
-            _ if to == Elementary::Bool && self.is_codesys() => Ok(Value::bool(value.as_integer()? != 0)),
-            _ if to == Elementary::Bool && from != Elementary::Bool && !real => {
+            _ if to == Elementary::Bool && from.is_bits() && from != Elementary::Bool && !self.is_codesys() => {
                 Ok(Value::bool(value.as_integer()? & 1 == 1))
             }
+            _ if to == Elementary::Bool && !real => Ok(Value::bool(value.as_integer()? != 0)),
             _ => Ok(in_repr(scalar, to)),
         }
     }

@@ -138,6 +138,13 @@ impl<'a> Machine<'a> {
 
     /// One of the runtime's operations at a type. A comparison gives a BOOL.
     pub(crate) fn applied(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
+        // In Logix an integer that is divided by zero stays what it is. (1756-RM003N, p. 277, 281)
+        if let ("DIV" | "MOD", Family::Logix, [a, b]) = (name, self.declared.family, operands)
+            && ty.is_integer()
+            && in_repr(*b, Elementary::Lint).as_integer()? == 0
+        {
+            return Ok(Value::scalar(ty, *a));
+        }
         match apply(name, ty.repr(), operands) {
             None => unknown(&format!("{name} of {ty:?}")),
             Some(Err(kind)) => Err(self.fault(kind, at)),

@@ -60,8 +60,8 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     }
     // The witness knows families, and SCL is of none.
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
-    if settings.options.dialect == Dialect::Siemens && (has("**") || has("_TO_STRING")) {
-        return Ok(Verdict::Rejected("a power, or the text of a number, in SCL".to_owned()));
+    if settings.options.dialect == Dialect::Siemens && (has("**") || has("_TO_STRING") || has("EN :")) {
+        return Ok(Verdict::Rejected("a power, the text of a number, or an EN, in SCL".to_owned()));
     }
     let family = settings.options.dialect.family();
     // The witness has no prescan of Logix: programs with its counters start without one.
