@@ -44,6 +44,7 @@ fn a_file_carries_values_over() {
         let (mut retention, _) = Retention::load(&map(), &path, &mut machine).unwrap();
         machine.state[offset_of("total")] = number;
         retention.save(7, &machine.state).unwrap();
+        drop(retention);
         machine.init();
         assert_eq!(load(&map(), &path, &mut machine).unwrap(), Loaded { clock: 7, notes: Vec::new() });
         assert_eq!(machine.state[offset_of("total")], number);
@@ -68,6 +69,7 @@ fn an_edited_program_keeps_what_still_fits() {
     // The file is of another form now: it is made anew.
     let (mut retention, _) = Retention::load(&edited, &path, &mut machine).unwrap();
     retention.save(0, &[4; 128]).unwrap();
+    drop(retention);
     assert_eq!(load(&edited, &path, &mut machine).unwrap().notes, [""; 0]);
 }
 
@@ -162,6 +164,7 @@ fn a_state_that_was_cut_off_gives_way_to_the_one_before() {
         state[offset_of("total")] = number;
         retention.save(0, &state).unwrap();
     }
+    drop(retention);
     let mut bytes = std::fs::read(&path).unwrap();
     assert_eq!(bytes.len(), 3 * format::SECTOR);
     bytes[2 * format::SECTOR + 24] ^= 4;
@@ -182,6 +185,7 @@ fn an_old_file_is_read_and_made_anew() {
     let (path, mut machine) = (file("old"), Bytes::new(&map()));
     let (mut retention, _) = Retention::load(&map(), &path, &mut machine).unwrap();
     retention.save(100, &machine.state).unwrap();
+    drop(retention);
     assert!(std::fs::read(&path).unwrap().starts_with(b"staunch retained variables 4\n"));
     assert_eq!(load(&map(), &path, &mut machine).unwrap().clock, 100);
     assert_eq!(machine.state[offset_of("total")], 42);

@@ -60,7 +60,6 @@ fn statements() {
            x = 1; // E0008
            IF x := 1 THEN y := 2; END_IF
            IF x == 1 && y != 2 || !z THEN y := 2; END_IF // E0010 E0010 E0010 E0010 E0010
-           x += 1; // E0010
            x++; // E0010
            x := 5 % 2; // E0010
            IF (x => 1) THEN ; END_IF // E0010
@@ -336,7 +335,6 @@ fn fixes_make_the_text_right() {
         ("x := a || b;", "x := a OR b;"),
         ("x := a%b;", "x := a MOD b;"),
         ("x := !a;", "x := NOT a;"),
-        ("x += 1;", "x := x + 1;"),
         ("x--;", "x := x - 1;"),
         ("x := 1\n y := 2;", "x := 1;\n y := 2;"),
         ("IF a\n x := 1; END_IF", "IF a THEN\n x := 1; END_IF"),
