@@ -459,7 +459,10 @@ impl Maker {
         let op = self.random.of(&ops);
         // Of a comparison any repr can be compared; else the result says it.
         let of = match op.result() {
-            Some(_) => self.random.of(&Repr::ALL),
+            Some(_) => {
+                let allowed: Vec<_> = Repr::ALL.iter().copied().filter(|it| op.allows(*it)).collect();
+                self.random.of(&allowed)
+            }
             None => repr,
         };
         let operands = op.operands().iter().map(|fixed| {

@@ -158,6 +158,58 @@ pub(crate) fn shortest(value: f64, format: Format) -> Digits {
     out
 }
 
+/// The first `count` digits, at most 17, the last one rounded, ties to even; `value` is an LREAL, finite and above 0.
+pub(crate) fn rounded(value: f64, count: usize) -> Digits {
+    let bits = value.to_bits();
+    let (raw, fraction) = ((bits >> 52) as i32 & 0x7FF, bits & ((1 << 52) - 1));
+    let (mantissa, power) = if raw == 0 { (fraction, -1074) } else { (fraction | 1 << 52, raw - 1075) };
+    let (mut rest, mut scale) = (Big::new(u128::from(mantissa)), Big::new(1));
+    rest.doubled(power.max(0) as u32);
+    scale.doubled((-power).max(0) as u32);
+    let mut exponent = 0;
+    while !rest.is_below(&scale) {
+        scale.times(10);
+        exponent += 1;
+    }
+    loop {
+        let mut more = rest.clone();
+        more.times(10);
+        if !more.is_below(&scale) {
+            break;
+        }
+        (rest, exponent) = (more, exponent - 1);
+    }
+    let mut out = Digits { digits: [0; 17], count: count.min(17), exponent };
+    for place in out.digits.iter_mut().take(count) {
+        rest.times(10);
+        while *place < 9 && !rest.is_below(&scale) {
+            rest.subtract(&scale);
+            *place += 1;
+        }
+    }
+    let last = out.digits.iter().take(count).next_back().copied().unwrap_or_default();
+    let half = rest.plus(&rest).order(&scale);
+    if half.is_gt() || half.is_eq() && last % 2 == 1 {
+        out.raise();
+    }
+    out
+}
+
+impl Digits {
+    /// One more in the last place.
+    fn raise(&mut self) {
+        for place in self.digits.iter_mut().take(self.count).rev() {
+            if *place < 9 {
+                *place += 1;
+                return;
+            }
+            *place = 0;
+        }
+        self.digits = [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
+        self.exponent += 1;
+    }
+}
+
 /// The real nearest to `digits * 10^exponent`, ties to even; infinity where it is beyond the greatest.
 pub(crate) fn nearest(digits: u128, exponent: i32, format: Format) -> f64 {
     if digits == 0 || exponent < -400 {
@@ -224,6 +276,20 @@ mod tests {
     use super::*;
     use std::format;
     use std::string::String;
+
+    #[test]
+    fn rounded_digits_are_those_of_core() {
+        for value in samples().map(f64::from_bits).filter(|it| it.is_finite() && *it > 0.0) {
+            for count in [1, 2, 6, 10, 17] {
+                let found = rounded(value, count);
+                let digits: String = found.digits.iter().take(count).map(|it| char::from(b'0' + it)).collect();
+                let text = format!("{value:.*e}", count - 1);
+                let (core, exponent) = text.split_once('e').unwrap_or_default();
+                assert_eq!(digits, core.replace('.', ""), "{value:e}, {count}");
+                assert_eq!(Ok(found.exponent - 1), exponent.parse(), "{value:e}, {count}");
+            }
+        }
+    }
 
     /// Reals without order, and the edges.
     fn samples() -> impl Iterator<Item = u64> {

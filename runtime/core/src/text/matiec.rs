@@ -1,6 +1,7 @@
 //! Text in OpenPLC, as C compiled by MATIEC (thiagoralves/matiec, f9ca9ba) has it.
 
 use super::{Destination, Unit, replace, to_lreal};
+use crate::decimal;
 use crate::time::{DAY, SECOND};
 use crate::{Elementary, Time};
 use core::fmt::Write;
@@ -78,6 +79,8 @@ pub fn from_general(value: f64, out: &mut Destination<'_>) {
     general(value, 10, out);
 }
 
+const ZERO: decimal::Digits = decimal::Digits { digits: [0; 17], count: 1, exponent: 1 };
+
 /// C's `%.*g` with so many significant digits, at most 17.
 fn general(value: f64, digits: usize, out: &mut Destination<'_>) {
     if value.is_sign_negative() {
@@ -86,11 +89,11 @@ fn general(value: f64, digits: usize, out: &mut Destination<'_>) {
     if !value.is_finite() {
         return out.write(if value.is_nan() { b"nan" } else { b"inf" });
     }
-    let mut text = super::Text::<32>::default();
-    let _ = write!(text.destination(), "{:.*e}", digits - 1, value.abs());
-    let (figures, exponent) = parts(text.as_bytes());
-    let kept = figures.as_bytes().iter().rposition(|it| *it != b'0').map_or(1, |it| it + 1);
-    let figures = figures.as_bytes().get(..kept).unwrap_or_default();
+    let magnitude = value.abs();
+    let found = if magnitude == 0.0 { ZERO } else { decimal::rounded(magnitude, digits) };
+    let (all, exponent) = (found.digits.map(|it| b'0' + it), found.exponent - 1);
+    let kept = found.digits.iter().rposition(|it| *it != 0).map_or(1, |it| it + 1);
+    let figures = all.get(..kept).unwrap_or_default();
     if exponent < -4 || exponent >= digits as i32 {
         with_point(figures, 1, out);
         let sign = if exponent < 0 { '-' } else { '+' };
@@ -113,17 +116,6 @@ fn with_point(figures: &[u8], whole: usize, out: &mut Destination<'_>) {
         out.write(b".");
         out.write(after);
     }
-}
-
-/// The digits of `d.ddde±x`, and the exponent.
-fn parts(text: &[u8]) -> (super::Text<32>, i32) {
-    let at = text.iter().position(|it| *it == b'e').unwrap_or(text.len());
-    let (mantissa, exponent) = text.split_at(at);
-    let mut figures = super::Text::<32>::default();
-    let mut destination = figures.destination();
-    mantissa.iter().filter(|it| it.is_ascii_digit()).for_each(|it| destination.write(&[*it]));
-    let number = core::str::from_utf8(exponent.get(1..).unwrap_or_default()).ok().and_then(|it| it.parse().ok());
-    (figures, number.unwrap_or(0))
 }
 
 /// A TIME, date or point in time. `kind` is its type's place among all.
@@ -169,8 +161,30 @@ fn write_clock(time: Time, out: &mut Destination<'_>) -> core::fmt::Result {
     write!(out, "{hour:02}:{minute:02}:")?;
     match rest {
         0 => write!(out, "{second:02}"),
-        _ => write!(out, "{:09.6}", second as f64 + rest as f64 / 1e9),
+        _ => write_seconds(second as f64 + rest as f64 / 1e9, out),
     }
+}
+
+/// C's `%09.6f` of a number between -1 and 60.
+fn write_seconds(seconds: f64, out: &mut Destination<'_>) -> core::fmt::Result {
+    let millionths = millionths(seconds.abs());
+    let (whole, part) = (millionths / 1_000_000, millionths % 1_000_000);
+    match seconds.is_sign_negative() {
+        true => write!(out, "-{whole}.{part:06}"),
+        false => write!(out, "{whole:02}.{part:06}"),
+    }
+}
+
+/// To the nearest one, ties to the even one.
+fn millionths(number: f64) -> u64 {
+    if number < 1e-6 {
+        return u64::from(number > 0.5e-6);
+    }
+    let places = 6 + decimal::rounded(number, 17).exponent;
+    let found = decimal::rounded(number, usize::try_from(places).unwrap_or(0));
+    let digits = found.digits.iter().take(found.count).fold(0, |all, digit| all * 10 + u64::from(*digit));
+    // Where all digits were 9, there is one more before the point.
+    if found.exponent + 6 > places { digits * 10 } else { digits }
 }
 
 /// The first of a month, but January, is written as the day after the last of the one before: `1970-01-32`.
@@ -242,7 +256,7 @@ fn of_digits(text: &[u8], bits: u32, base: u32) -> i64 {
     let mut number = 0_i64;
     let mut shift = 0;
     for byte in text.iter().rev() {
-        let Some(digit) = char::from(*byte).to_digit(base) else { continue };
+        let Some(digit) = digit_of(*byte).filter(|it| *it < base) else { continue };
         if shift >= 64 {
             break;
         }
@@ -253,6 +267,15 @@ fn of_digits(text: &[u8], bits: u32, base: u32) -> i64 {
         shift += bits;
     }
     number
+}
+
+fn digit_of(byte: u8) -> Option<u32> {
+    match byte {
+        b'0'..=b'9' => Some(u32::from(byte - b'0')),
+        b'a'..=b'f' => Some(u32::from(byte - b'a') + 10),
+        b'A'..=b'F' => Some(u32::from(byte - b'A') + 10),
+        _ => None,
+    }
 }
 
 /// A number with a point after its first character; without one, [`to_lint_back`].
