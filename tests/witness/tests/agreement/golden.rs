@@ -55,13 +55,15 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
-    if settings.options.f_trig_before_2024_12 || settings.options.dialect == Dialect::Openplc {
-        return Ok(Verdict::Rejected("values of MATIEC's C".to_owned()));
-    }
     // The witness knows families, and SCL is of none.
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
     if settings.options.dialect == Dialect::Siemens && (has("**") || has("_TO_STRING") || has("EN :")) {
         return Ok(Verdict::Rejected("a power, the text of a number, or an EN, in SCL".to_owned()));
+    }
+    let is_computed =
+        || ["_TO_", "REAL", "TIME", "TON", "TOF", "TP", "F_TRIG", "F_EDGE", "STRING"].iter().any(|it| has(it));
+    if settings.options.dialect == Dialect::Openplc && is_computed() {
+        return Ok(Verdict::Rejected("values of MATIEC's C".to_owned()));
     }
     let family = settings.options.dialect.family();
     // The witness has no prescan of Logix: programs with its counters start without one.
