@@ -600,7 +600,8 @@ impl Use {
     }
 }
 
-/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
+/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect, and a real is
+/// rounded to the even one of two integers.
 pub const NOT_FOLLOWED: &[NotFollowed] = &[
     not_followed(
         Dialect::Codesys,
@@ -622,8 +623,12 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
         SIEMENS_DATES,
     ),
+    not_followed(Dialect::Openplc4, Elementary::Real, HALVES, "STruC++ 0.6.1, run"),
+    not_followed(Dialect::Openplc4, Elementary::Lreal, HALVES, "STruC++ 0.6.1, run"),
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
+
+const HALVES: &str = "a half is rounded away from zero: `REAL_TO_INT(2.5)` is 3";
 
 const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
 
