@@ -36,6 +36,8 @@ pub struct File<'s> {
     pub reserved: Option<Span>,
     /// For each `a += b`, which is read as `a := a + (b)`: what is reported where the dialect does not have it.
     pub combined: Vec<crate::Diagnostic>,
+    /// The targets of `a [:=] b`.
+    pub nonretentive: Vec<Span>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.

@@ -270,6 +270,21 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// A STRING may have no characters, or more than LEN can count.
+    pub const fn has_long_strings(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `a [:=] b`: what is assigned so is set to 0 by the prescan (1756-PM007).
+    pub const fn resets_assignments(self) -> bool {
+        matches!(self, Self::Logix)
+    }
+
+    /// A VAR_IN_OUT may be declared with a value, which is not used: each call gives a variable.
+    pub const fn has_values_of_in_outs(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// A variable alone is a statement that does nothing.
     pub const fn takes_values_alone(self) -> bool {
         matches!(self, Self::Codesys)

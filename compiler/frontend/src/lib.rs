@@ -177,9 +177,10 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
         declarations.report_not_there(&routines);
     }
     let left_out = checked.left_out;
-    let program = program::assemble(&mut declarations, &files, checked);
+    let is_last = whole.referred.is_some() || declarations.table.interfaces.slots.is_empty();
+    let program = program::assemble(&mut declarations, &files, checked, is_last);
     let is_recursive = declarations.log.diagnostics.iter().any(|it| it.code == Code::E0310);
-    if is_recursive && whole.referred.is_none() && !declarations.table.interfaces.slots.is_empty() {
+    if is_recursive && !is_last {
         // Perhaps only by a class to whose instances nothing refers.
         whole.referred = Some(declarations.table.interfaces.referred.clone());
         return None;
@@ -220,12 +221,26 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     files.iter().for_each(|it| log.read_pragmas(it));
     files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.combined)).for_each(|it| report_combined(it, log));
+    files.iter_mut().flat_map(|it| std::mem::take(&mut it.nonretentive)).for_each(|it| note_nonretentive(it, log));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
     start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     Trees { files, groups, stubs, allowances, has_tests }
+}
+
+/// Notes `a [:=] b`, and reports it where the dialect does not have it.
+fn note_nonretentive(target: Span, log: &mut Log<'_>) {
+    if log.dialect(target).resets_assignments() {
+        log.nonretentive.insert(target);
+        return;
+    }
+    log.report(
+        Diagnostic::new(Code::E0321, target, "`[:=]` is the non-retentive assignment of Logix")
+            .label("Logix sets this to 0 as the controller starts to run")
+            .help("write `:=`; the variable has its initial value after a start, unless it is RETAIN"),
+    );
 }
 
 /// Reports `a += b` where the dialect does not have it.

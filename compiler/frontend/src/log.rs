@@ -3,6 +3,7 @@
 use crate::dialect::Dialect;
 use crate::options::Options;
 use crate::{Code, Diagnostic, Severity, Sources, Span};
+use rustc_hash::FxHashSet;
 use staunch_ir::Location;
 
 pub(crate) struct Log<'s> {
@@ -15,6 +16,8 @@ pub(crate) struct Log<'s> {
     pub has_named_narrowing: bool,
     /// The attributes that conditions ask for: `{IF hasattribute(…)}`.
     pub asked_attributes: Vec<&'s str>,
+    /// The targets of assignments that are undone as the controller starts.
+    pub nonretentive: FxHashSet<Span>,
     line_cache: LineCache,
 }
 
@@ -40,6 +43,7 @@ impl<'s> Log<'s> {
             diagnostics: Vec::new(),
             has_named_narrowing: false,
             asked_attributes: Vec::new(),
+            nonretentive: FxHashSet::default(),
             line_cache,
         }
     }

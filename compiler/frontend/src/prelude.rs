@@ -372,6 +372,12 @@ pub(crate) fn units(name: &str) -> impl Iterator<Item = Unit> {
     BY_NAME.get(&Key(name)).into_iter().flatten().copied()
 }
 
+/// Whether a namespace is the standard library's, in which standard functions are, too: `System.Math`.
+pub(crate) fn is_standard_space(name: &str) -> bool {
+    let is_in_system = name.split_once('.').is_some_and(|it| it.0.eq_ignore_ascii_case(SYSTEM));
+    is_in_system && units(name).any(|it| it.use_ == Use::Space)
+}
+
 /// The unit that a dialect has by this name.
 pub(crate) fn unit(name: &str, dialect: Dialect) -> Option<Unit> {
     units(name).find(|it| it.dialects.is_empty() || it.dialects.contains(&dialect))

@@ -4,6 +4,7 @@
 //! a call of [`MEMBERS`] becomes what is to be done.
 
 mod addresses;
+mod computed;
 mod expected;
 mod varying;
 
@@ -17,6 +18,7 @@ use crate::testing::tree::{assign, literal, named, variables};
 pub(crate) use addresses::is_once;
 
 use addresses::Addresses;
+use computed::{Owner, blocks, has_state};
 use expected::Types;
 use varying::{Everywhere, Names};
 
@@ -68,10 +70,9 @@ pub(crate) fn expand(files: &mut [File<'_>], binds: &dyn Fn(Span) -> bool) {
                 states.push(found);
             }
             Item::Globals(_) | Item::Configuration(_) => {
-                let found = addresses::taken(blocks_of(item).iter_mut(), &types, None);
-                first = first.or(found.before.first().map(|it| it.span));
-                of_globals_alone.before.extend(found.before);
-                of_globals_alone.after.extend(found.after);
+                let found = addresses::taken(blocks_of(item).iter_mut(), &types, None, Owner::Globals);
+                first = first.or(found.first());
+                of_globals_alone.append(found);
             }
             Item::Types(declared) => {
                 first = declared.iter_mut().fold(first, |first, it| first.or(addresses::of_members(&mut it.ty, &types)))
@@ -107,25 +108,12 @@ fn pou<'a, 's>(item: &'a Item<'s>) -> Option<&'a Pou<'s>> {
     }
 }
 
-/// The global variables in an item.
-fn blocks<'a, 's>(item: &'a Item<'s>) -> &'a [VarBlock<'s>] {
-    match item {
-        Item::Globals(block) => std::slice::from_ref(block),
-        Item::Configuration(it) => &it.globals,
-        Item::Pou(_) | Item::Types(_) | Item::Test(_) => &[],
-    }
-}
-
 fn blocks_of<'a, 's>(item: &'a mut Item<'s>) -> &'a mut [VarBlock<'s>] {
     match item {
         Item::Globals(block) => std::slice::from_mut(block),
         Item::Configuration(it) => &mut it.globals,
         Item::Pou(_) | Item::Types(_) | Item::Test(_) => &mut [],
     }
-}
-
-fn has_state(kind: PouKind) -> bool {
-    kind.is_block() || matches!(kind, PouKind::Program | PouKind::Test)
 }
 
 fn is_retain(block: &VarBlock<'_>) -> bool {

@@ -87,14 +87,24 @@ pub fn parse_with<'s>(
     let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let items = parse_items(&mut state);
     let (mut found, braces, regions, bindings) = (state.diagnostics, state.braces, state.regions, state.bindings);
-    let combined = state.combined;
+    let (combined, nonretentive) = (state.combined, state.nonretentive);
     found.append(&mut tokens.diagnostics);
     tokens.pragmas.retain(|it| !braces.contains(&it.span));
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
     let (undecided, reserved) = (tokens.undecided, tokens.reserved);
-    File { items, bindings, pragmas: tokens.pragmas, test_pragmas, regions, undecided, reserved, combined }
+    File {
+        items,
+        bindings,
+        pragmas: tokens.pragmas,
+        test_pragmas,
+        regions,
+        undecided,
+        reserved,
+        combined,
+        nonretentive,
+    }
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

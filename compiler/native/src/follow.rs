@@ -108,10 +108,10 @@ impl Function<'_, '_> {
 
     pub(crate) fn load_reached(&mut self, it: Reached) -> clif::Value {
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
-        let Some((pointer, slow)) = self.plain(it, repr) else { return self.load_by_runtime(it, repr) };
+        let Some((pointer, slow)) = self.plain(it) else { return self.load_by_runtime(it, repr) };
         let done = self.builder.create_block();
         self.builder.append_block_param(done, clif_type(repr));
-        let value = self.load_as(clif_type(repr), Address::at(pointer));
+        let value = self.ins().load(clif_type(repr), anywhere(), pointer, 0);
         self.ins().jump(done, &[BlockArg::Value(value)]);
         self.builder.switch_to_block(slow);
         let value = self.load_by_runtime(it, repr);
@@ -129,7 +129,7 @@ impl Function<'_, '_> {
 
     /// Where a number lies in an object that is nothing but numbers, and the block for all else, which is still to
     /// be filled: what the runtime says of such an object, in line.
-    fn plain(&mut self, it: Reached, repr: Repr) -> Option<(clif::Value, clif::Block)> {
+    fn plain(&mut self, it: Reached) -> Option<(clif::Value, clif::Block)> {
         let View::Number(size) = view(self.module.program, it.ty) else { return None };
         let (slow, fast) = (self.builder.create_block(), self.builder.create_block());
         self.builder.set_cold_block(slow);
@@ -154,16 +154,8 @@ impl Function<'_, '_> {
         // Neither is negative where the number lies within; the sizes are far from those of 64 bits.
         let after = self.ins().isub(length, position);
         let after = self.ins().iadd_imm_s(after, -i64::from(size));
-        let mut wrong = self.ins().bor(position, after);
-        if repr.size() > 1 {
-            // The lowest bits, of which none may be set.
-            let low = self.ins().ishl_imm_u(offset, i64::from(64 - size.trailing_zeros()));
-            let is_misaligned = self.ins().icmp_imm_s(IntCC::NotEqual, low, 0);
-            let is_outside = self.ins().icmp_imm_s(IntCC::SignedLessThan, wrong, 0);
-            wrong = self.ins().bor(is_misaligned, is_outside);
-        } else {
-            wrong = self.ins().icmp_imm_s(IntCC::SignedLessThan, wrong, 0);
-        }
+        let wrong = self.ins().bor(position, after);
+        let wrong = self.ins().icmp_imm_s(IntCC::SignedLessThan, wrong, 0);
         self.ins().brif(wrong, slow, &[], fast, &[]);
         self.builder.seal_block(slow);
         self.go_on_in(fast);
@@ -173,9 +165,9 @@ impl Function<'_, '_> {
 
     pub(crate) fn store_reached(&mut self, it: Reached, value: clif::Value) {
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
-        let Some((pointer, slow)) = self.plain(it, repr) else { return self.store_by_runtime(it, repr, value) };
+        let Some((pointer, slow)) = self.plain(it) else { return self.store_by_runtime(it, repr, value) };
         let done = self.builder.create_block();
-        self.store(value, Address::at(pointer));
+        self.ins().store(anywhere(), value, pointer, 0);
         self.ins().jump(done, &[]);
         self.builder.switch_to_block(slow);
         self.store_by_runtime(it, repr, value);
@@ -361,4 +353,9 @@ impl Function<'_, '_> {
         let high = self.ins().ishl_imm_u(high, 32);
         self.ins().bor(low, high)
     }
+}
+
+/// A number behind a reference is at any address: all targets read and write it there.
+fn anywhere() -> MemFlagsData {
+    MemFlagsData::new().with_notrap()
 }

@@ -23,7 +23,7 @@ pub enum FaultKind {
     NullReference = 7,
     /// A reference was followed to outside of the object that it came from.
     OutsideObject = 8,
-    /// A number was read or written at a position that is no multiple of its size.
+    /// A WSTRING was read or written from the middle of a code unit on.
     MisalignedReference = 9,
     /// What a reference points to may not be viewed as what was asked for.
     ForbiddenView = 10,
@@ -39,10 +39,12 @@ pub enum FaultKind {
     NotOfPool = 15,
     /// The program raised an exception (TwinCAT's `F_RaiseException`).
     Raised = 16,
+    /// References led METHODs back to an instance whose METHOD had not ended.
+    Recursion = 17,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -59,6 +61,7 @@ impl FaultKind {
         Self::Deleted,
         Self::NotOfPool,
         Self::Raised,
+        Self::Recursion,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -85,14 +88,15 @@ impl FaultKind {
             Self::Deleted => "a reference points to an object that was deleted",
             Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",
             Self::Raised => "an exception was raised",
+            Self::Recursion => "a METHOD was called again before it had ended",
         }
     }
 
-    /// Whether a program may handle it and go on (CODESYS' `__TRY`). It may not go on where a loop has no end, as that would
-    /// defeat the budget; nor where a test has failed, or what it would call is not there.
+    /// Whether a program may handle it and go on (CODESYS' `__TRY`). It may not go on where a loop or a recursion has no end, as that
+    /// would defeat the budget; nor where a test has failed, or what it would call is not there.
     pub const fn can_be_caught(self) -> bool {
         match self {
-            Self::LoopBudget | Self::AssertionFailed | Self::NotImplemented => false,
+            Self::LoopBudget | Self::AssertionFailed | Self::NotImplemented | Self::Recursion => false,
             Self::DivideByZero
             | Self::IndexOutOfRange
             | Self::SubrangeViolated

@@ -43,6 +43,9 @@ impl<'a> Passed<'a> {
     }
 }
 
+/// More calls of METHODs in one another than this are not followed.
+const MOST_NESTED: u32 = 40;
+
 impl<'a> Machine<'a> {
     /// A call of a function or an instance; the value of a function that has one.
     ///
@@ -234,8 +237,24 @@ impl<'a> Machine<'a> {
         instance.ty.class().filter(|_| self.declared.pous[routine].kind == PouKind::Action).unwrap_or(routine)
     }
 
-    /// One call of a routine whose arguments have been found.
+    /// One call of a routine whose arguments have been found. A chain of instances that is this long may have no end.
     pub(crate) fn run_routine(
+        &mut self,
+        frame: &Frame<'a>,
+        routine: usize,
+        instance: &Place<'a>,
+        passed: Vec<Passed<'a>>,
+    ) -> Outcome<Option<Value<'a>>> {
+        if self.nested >= MOST_NESTED {
+            return unknown("a long chain of instances");
+        }
+        self.nested += 1;
+        let result = self.routine(frame, routine, instance, passed);
+        self.nested -= 1;
+        result
+    }
+
+    fn routine(
         &mut self,
         frame: &Frame<'a>,
         routine: usize,

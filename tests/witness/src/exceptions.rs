@@ -42,7 +42,9 @@ impl<'a> Machine<'a> {
                 "RTSEXCPT_ACCESS_VIOLATION"
             }
             FaultKind::Raised => return Some(self.raised),
-            FaultKind::LoopBudget | FaultKind::AssertionFailed | FaultKind::NotImplemented => return None,
+            FaultKind::LoopBudget | FaultKind::AssertionFailed | FaultKind::NotImplemented | FaultKind::Recursion => {
+                return None;
+            }
             FaultKind::SubrangeViolated
             | FaultKind::ZeroStep
             | FaultKind::NoSuchDate

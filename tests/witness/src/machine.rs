@@ -55,6 +55,8 @@ pub struct Machine<'a> {
     steps: u32,
     /// The exception that was raised last.
     pub(crate) raised: u32,
+    /// How many calls of METHODs and ACTIONs have not ended.
+    pub(crate) nested: u32,
     /// Where the ENO of the call leads whose arguments are evaluated.
     pub(crate) eno: Option<Place<'a>>,
 }
@@ -92,6 +94,7 @@ impl<'a> Machine<'a> {
             context: Context::default(),
             steps: 0,
             raised: 0,
+            nested: 0,
             eno: None,
         };
         this.start_images();

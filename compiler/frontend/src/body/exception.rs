@@ -37,7 +37,8 @@ const fn exception(kind: FaultKind) -> u32 {
         // Not caught.
         | FaultKind::LoopBudget
         | FaultKind::AssertionFailed
-        | FaultKind::NotImplemented => UNKNOWN,
+        | FaultKind::NotImplemented
+        | FaultKind::Recursion => UNKNOWN,
     }
 }
 

@@ -214,7 +214,11 @@ impl<'s> Checker<'_, 's> {
             self.check_binding(target, value)?;
             self.note_binding(target, value);
         }
-        self.assigned(std::slice::from_ref(target), value, span, false).map(drop)
+        self.assigned(std::slice::from_ref(target), value, span, false).map(drop)?;
+        if self.decl.log.nonretentive.contains(&target.span) {
+            self.reset_at_start(target)?;
+        }
+        Some(())
     }
 
     /// What a VAR_CONFIG binds has the type that it says. A run copies it in first, and back where it is no input.

@@ -79,6 +79,9 @@ impl<'s> Declarations<'s> {
 
     fn check_in_out_has_no_initial(&mut self, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>) {
         let (VarKind::InOut, Some(initial)) = (block.kind, &decl.initial) else { return };
+        if self.dialect(initial.span).has_values_of_in_outs() {
+            return;
+        }
         let whole = Span { start: decl.ty.span.end, ..initial.span };
         self.report(
             Diagnostic::new(Code::E0403, initial.span, "a VAR_IN_OUT has no initial value")

@@ -29,6 +29,9 @@ const MAX_DIMENSIONS: usize = 64;
 /// Longest string.
 const MAX_CAPACITY: i128 = 32767;
 
+/// The most where a system has no such limit: a length has 16 bits.
+const LONG_CAPACITY: i128 = 65534;
+
 /// Types of SIMATIC S7 that are not the standard's, and what to write for them.
 const OF_SIMATIC: [(&str, &str); 4] = [
     ("S5TIME", "write `TIME`, with literals `T#2s`: the standard's timers take it, and it counts exactly"),
@@ -390,9 +393,10 @@ impl<'s> Declarations<'s> {
             return Some(string(self.dialect(span).rules().default_string.choice.capacity()));
         };
         let length = self.constant_integer(expr, scope)?;
-        if !(1..=MAX_CAPACITY).contains(&length) {
+        let limits = if self.dialect(span).has_long_strings() { 0..=LONG_CAPACITY } else { 1..=MAX_CAPACITY };
+        if !limits.contains(&length) {
             let ty = StringType { wide, capacity: 0 };
-            let message = format!("a {} holds 1 to {MAX_CAPACITY} {}", ty.word(), ty.units());
+            let message = format!("a {} holds {} to {} {}", ty.word(), limits.start(), limits.end(), ty.units());
             self.report(Diagnostic::new(Code::E0206, expr.span, message).label(format!("this is {length}")));
             return None;
         }

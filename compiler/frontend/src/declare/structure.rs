@@ -7,7 +7,8 @@ use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial, struct_initial};
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{
-    Chars, Const, Elementary, Field, FieldId, Location, Overlay, Retain, Section, Struct, StructId, Type, Value,
+    Chars, Const, Elementary, Field, FieldId, Location, Overlay, RefKind, Retain, Section, Struct, StructId, Type,
+    Value,
 };
 use std::rc::Rc;
 
@@ -161,6 +162,7 @@ impl<'s> Declarations<'s> {
         let (mut overlays, mut starts) = (Vec::new(), Vec::new());
         let (mut unit, mut size, mut align) = (8, 0, 1);
         let mut complete = true;
+        let are_pointers = members.iter().all(is_pointer);
         for decl in members {
             let owner = decl.names.first().map_or(name, |it| it.text);
             let is_bit = self.is_bit(&decl.ty);
@@ -169,7 +171,8 @@ impl<'s> Declarations<'s> {
                 false => self.declared_type(decl, scope, owner),
             };
             let resolved = resolved.map(Rc::new);
-            let Some((resolved, part)) = resolved.and_then(|it| Some((Rc::clone(&it), self.shareable(&it, decl)?)))
+            let Some((resolved, part)) =
+                resolved.and_then(|it| Some((Rc::clone(&it), self.shareable(&it, decl, are_pointers)?)))
             else {
                 complete = false;
                 continue;
@@ -237,7 +240,11 @@ impl<'s> Declarations<'s> {
     }
 
     /// The bytes of the smallest part of what a member of a UNION holds; what cannot share its bytes is reported.
-    fn shareable(&mut self, resolved: &Resolved, decl: &ast::VarDecl<'s>) -> Option<u64> {
+    /// Pointers are shared among themselves alone: each is made of a variable.
+    fn shareable(&mut self, resolved: &Resolved, decl: &ast::VarDecl<'s>, are_pointers: bool) -> Option<u64> {
+        if are_pointers {
+            return Some(self.size_of(resolved.ty));
+        }
         match self.smallest_part(resolved.ty) {
             Ok(size) => Some(size),
             Err((ty, why)) => {
@@ -431,4 +438,9 @@ pub(super) fn storage(name: &str, ty: Type, initial: Const, doc: Option<String>,
         doc,
         location,
     }
+}
+
+/// `p : POINTER TO INT`
+fn is_pointer(decl: &ast::VarDecl<'_>) -> bool {
+    matches!(decl.ty.kind, ast::TypeKind::Reference { kind: RefKind::PointerTo | RefKind::RefTo, .. })
 }

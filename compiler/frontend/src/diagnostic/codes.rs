@@ -117,6 +117,7 @@ codes! {
     E0318 Error "a call of what has no body";
     E0319 Error "what cannot be implemented outside";
     E0320 Error "a call of an ABSTRACT METHOD by SUPER";
+    E0321 Error "a non-retentive assignment";
     E0402 Error "a declaration needs itself";
     E0403 Error "qualifier does not belong here";
     E0405 Error "VAR_EXTERNAL differs from its global";

@@ -122,6 +122,31 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// `a [:=] b`: the prescan sets it to 0.
+    pub(crate) fn reset_at_start(&mut self, target: &ast::Expr<'s>) -> Option<()> {
+        let (base, part) = match &target.kind {
+            ast::ExprKind::Part(base, part) => (&**base, Some(*part)),
+            _ => (target, None),
+        };
+        let place = self.place(base)?.place;
+        let preparation = match part {
+            Some(part) => Preparation::Bit { shift: Some(self.find_part(place.ty, part)?.bits().shift), value: false },
+            None if self.decl.program.repr(place.ty).is_some() => Preparation::Zero,
+            None => {
+                let ty = self.type_name(place.ty);
+                let error = Diagnostic::new(
+                    Code::E0321,
+                    target.span,
+                    format!("`[:=]` assigns a number or a BOOL, this is {ty}"),
+                );
+                self.report(error.label("only one value is set to 0").help("write `:=`"));
+                return None;
+            }
+        };
+        self.prepared(&place, preparation);
+        Some(())
+    }
+
     /// What is given for a bit.
     fn bit(&mut self, name: ast::Name<'s>, operand: &str, expr: &ast::Expr<'s>) -> Option<(Place, Bit)> {
         let (base, part) = match &expr.kind {

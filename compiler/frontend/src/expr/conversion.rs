@@ -16,10 +16,13 @@ impl<'s> Checker<'_, 's> {
         name: ast::Name<'s>,
     ) -> Option<Expr> {
         let value_expr = match parsed.from {
-            Some(Converted::Elementary(from)) => self.value(value, Type::Elementary(from))?,
+            Some(Converted::Elementary(from)) => self.value_converted(value, from)?,
             Some(Converted::Text { wide }) => self.text(value, Some(wide), name)?,
             None if self.is_character(value, parsed.to) => self.value(value, Type::Elementary(Elementary::Char))?,
-            None => self.typed(value, None)?,
+            None => {
+                let given = self.typed(value, None)?;
+                self.address_as_number(given, value.span)
+            }
         };
         let to = match parsed.to {
             Converted::Elementary(to) => to,
@@ -36,6 +39,32 @@ impl<'s> Checker<'_, 's> {
         }
         let (number, from) = self.as_elementary(value_expr, value.span, name)?;
         self.between(number, from, to, name.span)
+    }
+
+    /// What `UDINT_TO_INT` is given. In CODESYS what is computed of integers keeps the low bits of a UDINT, where it is
+    /// computed at a greater width.
+    fn value_converted(&mut self, value: &ast::Expr<'s>, from: Elementary) -> Option<Expr> {
+        let is_computed = matches!(value.bare().kind, ast::ExprKind::Binary(..) | ast::ExprKind::Unary(..));
+        let ty = Type::Elementary(from);
+        if !is_computed || !from.is_integer() || !self.decl.dialect(value.span).binds_by_assignment() {
+            return self.value(value, ty);
+        }
+        let operand = self.operand(value, Some(ty))?;
+        let is_wide =
+            |it: &Expr| it.ty.elementary().is_some_and(|it| it.is_integer() && it.repr().size() > from.repr().size());
+        match operand.typed().filter(|it| is_wide(it)).cloned() {
+            Some(wide) => Some(self.convert(Conversion::Value, ty, wide)),
+            None => self.coerce(operand, ty, value.span),
+        }
+    }
+
+    /// An address counts as an integer in CODESYS.
+    fn address_as_number(&mut self, value: Expr, span: Span) -> Expr {
+        let counts = matches!(value.ty, Type::Reference(_)) && self.decl.interface_of(value.ty).is_none();
+        match counts && self.decl.dialect(span).binds_by_assignment() {
+            true => self.address_bits(value),
+            false => value,
+        }
     }
 
     /// Whether what `TO_x` is given is one character, whose number is meant: SIMATIC AX converts no texts to numbers.

@@ -1,13 +1,14 @@
 //! Expressions: each becomes an operand, which may take the type that its place asks for.
 
 use super::checker::{Checker, Context};
+use super::method::is_this;
 use super::operand::{Operand, computed};
 use super::place::{Access, Found};
 use crate::types::scope::Variable;
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, UnaryOp};
-use staunch_ir::{Chars, Const, Conversion, Elementary, Expr, ExprKind, Op, Root, Section, Type};
+use staunch_ir::{Chars, Const, Conversion, Elementary, Expr, ExprKind, Op, RefKind, Root, Section, Type};
 use staunch_runtime::Class;
 
 impl<'s> Checker<'_, 's> {
@@ -91,6 +92,9 @@ impl<'s> Checker<'_, 's> {
         }
         if let Some(value) = self.bare_enumerator(name, expected) {
             return value;
+        }
+        if is_this(&own) && self.decl.dialect(name.span).binds_by_assignment() && !self.is_this_of_program(&own) {
+            return self.reference_to(&own, RefKind::PointerTo);
         }
         self.unknown_name(name);
         None

@@ -76,7 +76,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The bytes of a place's elements, or of the place where it has none.
-    pub(super) fn unit_size(&self, place: &Place) -> u64 {
+    fn unit_size(&self, place: &Place) -> u64 {
         match place.ty {
             Type::Array(id) => self.decl.size_of(self.decl.program.array(id).element),
             ty => self.decl.size_of(ty),

@@ -83,7 +83,11 @@ impl<'s> Checker<'_, 's> {
 
     /// `p^`
     pub(crate) fn dereferenced(&mut self, inner: &ast::Expr<'s>, span: Span) -> Option<Found<'s>> {
-        let found = self.place(inner)?;
+        let found = self.place_or_view(inner)?;
+        let found = match found.view {
+            Some(view) if matches!(view.ty, Type::Reference(_)) => self.pointer_of_union(found, view.ty, inner.span)?,
+            Some(_) | None => self.whole(found, inner.span)?,
+        };
         if self.decl.interface_of(found.place.ty).is_some() {
             self.report_interface(found.place.ty, "`^` follows a reference", span);
             return None;
@@ -97,6 +101,14 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         self.followed(found, id, span)
+    }
+
+    /// A copy of a UNION's pointer, which is followed.
+    fn pointer_of_union(&mut self, found: Found<'s>, ty: Type, span: Span) -> Option<Found<'s>> {
+        let value = self.read(found.place, found.view, span)?;
+        let place = self.temporary("pointer", ty);
+        self.assign(place.clone(), value, span);
+        Some(Found { place, view: None, access: found.access })
     }
 
     /// A call of what takes a variable rather than its value; `None` where `callee` is something else.
@@ -136,7 +148,7 @@ impl<'s> Checker<'_, 's> {
         let target = self.type_of(&found);
         let mut bytes = 0;
         let found = match found.view {
-            Some(view) if self.has_address(&found.place, view) => {
+            Some(view) if Self::has_address(view) => {
                 bytes = self.bytes_in_unit(&found.place, view);
                 Found { place: self.first_unit(&found.place, view, expr.span), view: None, ..found }
             }
@@ -221,11 +233,9 @@ impl<'s> Checker<'_, 's> {
         is_shared && self.decl.dialect(expr.span).has_addresses_of_constants()
     }
 
-    /// Whether a reference may lead to a view: it begins with a byte, and where addresses share bits it is aligned as what
-    /// keeps them is. One that a packed structure does not align faults when it is followed.
-    fn has_address(&self, place: &Place, view: Window) -> bool {
-        let is_aligned = view.address.is_none() || self.decl.align_of(view.ty) <= self.unit_size(place);
-        !view.is_bit && !view.is_selected && is_aligned
+    /// Whether a reference may lead to a view: it begins with a byte.
+    fn has_address(view: Window) -> bool {
+        !view.is_bit && !view.is_selected
     }
 
     /// The copy that has the address of a CONSTANT; others are themselves.
@@ -619,7 +629,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The address as an LWORD.
-    fn address_bits(&mut self, value: Expr) -> Expr {
+    pub(super) fn address_bits(&mut self, value: Expr) -> Expr {
         self.masked(value, ADDRESS)
     }
 

@@ -286,7 +286,8 @@ impl<'s> Checker<'_, 's> {
         if let Some(written) = given.initial {
             // FB_init sees what the class itself says.
             let default = self.decl.start_of(place.ty);
-            self.values_given((place.clone(), !initial.is_empty()), written, (&default, &given.value), &mut values);
+            let is_written = !initial.is_empty() || self.decl.assigns_at_start(class);
+            self.values_given((place.clone(), is_written), written, (&default, &given.value), &mut values);
         }
         for Assigned { place, default, .. } in &values {
             self.assign_constant(place, default, given.span);

@@ -22,6 +22,8 @@ pub(crate) enum Preparation {
     Instruction(usize),
     /// A BOOL, or a bit of an integer, is given a value.
     Bit { shift: Option<u32>, value: bool },
+    /// A number is set to 0.
+    Zero,
 }
 
 /// A variable that the body assigns as a whole.

@@ -112,6 +112,8 @@ impl<'s> Checker<'_, 's> {
                 let number = self.convert(Conversion::Value, base, value);
                 Some(self.convert(Conversion::Same, ty, number))
             }
+            // Of a UNION of pointers alone.
+            Type::Reference(_) => Some(self.convert(Conversion::Same, ty, value)),
             read => Some(self.convert(Conversion::Value, read, value)),
         }
     }
@@ -126,6 +128,7 @@ impl<'s> Checker<'_, 's> {
                 let number = self.convert(Conversion::Same, base, value);
                 self.convert(Conversion::Value, bits, number)
             }
+            Type::Reference(_) => self.convert(Conversion::Same, bits, value),
             _ => self.convert(Conversion::Value, bits, value),
         })
     }

@@ -1,7 +1,10 @@
 //! The classes of a program as they are written, what the names after EXTENDS mean, and which METHODs have the same
 //! parameters: as far as syntax and names tell, before types are known.
 
-use crate::ast::{Bound, Expr, File, Item, Name, Path, Pou, PouKind, TypeKind, TypeSpec, VarDecl, VarKind};
+use crate::ast::{
+    BinaryOp, Bound, Expr, ExprKind, File, InitialKind, Item, Literal, LiteralValue, Name, Path, Pou, PouKind,
+    TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind,
+};
 use crate::dialect::Dialect;
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site};
@@ -12,6 +15,9 @@ use staunch_ir::Elementary;
 
 /// Other names are followed no farther: those that lead back to themselves are reported later.
 const MAX_ALIASES: usize = 100;
+
+/// Constants in constants are followed no farther.
+const MAX_CONSTANTS: usize = 100;
 
 pub(super) struct Class<'s> {
     pub file: usize,
@@ -36,6 +42,8 @@ pub(super) struct Classes<'s> {
     pous: Vec<Option<usize>>,
     /// For each type, the one that it is another name for.
     aliases: Vec<Option<Path<'s>>>,
+    /// The values of global CONSTANTs.
+    constants: Vec<Expr<'s>>,
     names: Names<'s>,
     sources: &'s Sources,
     dialects: Vec<Dialect>,
@@ -48,6 +56,7 @@ impl<'s> Classes<'s> {
             by_declaration: FxHashMap::default(),
             pous: Vec::new(),
             aliases: Vec::new(),
+            constants: Vec::new(),
             names: Names::default(),
             sources: log.sources,
             dialects: log.dialects.clone(),
@@ -95,7 +104,19 @@ impl<'s> Classes<'s> {
                     self.aliases.push(path.filter(|_| it.base.is_none()));
                 }
             }
-            Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
+            Item::Globals(block) => self.collect_constants(block),
+            Item::Configuration(_) | Item::Test(_) => {}
+        }
+    }
+
+    fn collect_constants(&mut self, block: &VarBlock<'s>) {
+        for decl in block.vars.iter().filter(|_| block.constant.is_some()) {
+            let Some(InitialKind::Value(value)) = decl.initial.as_ref().map(|it| &it.kind) else { continue };
+            for name in &decl.names {
+                let space = self.names.space_of(name.span);
+                self.names.insert(space, name.text, Entry::Global(self.constants.len()), false);
+                self.constants.push(value.clone());
+            }
         }
     }
 
@@ -197,9 +218,45 @@ impl<'s> Classes<'s> {
         match (a, b) {
             (Bound::Open(_), Bound::Open(_)) => true,
             (Bound::Range(a, b), Bound::Range(x, y)) => {
-                Key(&written(a)) == Key(&written(x)) && Key(&written(b)) == Key(&written(y))
+                let same = |a: &Expr<'s>, b: &Expr<'s>| match (self.number(a, 0), self.number(b, 0)) {
+                    (Some(a), Some(b)) => a == b,
+                    _ => Key(&written(a)) == Key(&written(b)),
+                };
+                same(a, x) && same(b, y)
             }
             _ => false,
+        }
+    }
+}
+
+impl<'s> Classes<'s> {
+    /// What a bound is, where numbers and global CONSTANTs say it.
+    fn number(&self, expr: &Expr<'s>, depth: usize) -> Option<i128> {
+        if depth > MAX_CONSTANTS {
+            return None;
+        }
+        match &expr.kind {
+            ExprKind::Literal(Literal { value: LiteralValue::Integer { value, .. }, .. }) => Some(i128::from(*value)),
+            ExprKind::Paren(inner) | ExprKind::Unary(UnaryOp::Plus, inner) => self.number(inner, depth),
+            ExprKind::Unary(UnaryOp::Neg, inner) => self.number(inner, depth)?.checked_neg(),
+            ExprKind::Binary(sides, op, _) => {
+                let (a, b) = (self.number(&sides[0], depth)?, self.number(&sides[1], depth)?);
+                match op {
+                    BinaryOp::Add => a.checked_add(b),
+                    BinaryOp::Sub => a.checked_sub(b),
+                    BinaryOp::Mul => a.checked_mul(b),
+                    _ => None,
+                }
+            }
+            ExprKind::Name(_) | ExprKind::Member(..) => {
+                let path = expr.path()?;
+                let site = self.site(path.last()?.span);
+                match self.names.lookup(site, &path, Sense::Value) {
+                    Found::One(Meaning::Declared(Entry::Global(at))) => self.number(self.constants.get(at)?, depth + 1),
+                    _ => None,
+                }
+            }
+            _ => None,
         }
     }
 }

@@ -432,7 +432,7 @@ impl<'s> Names<'s> {
         // `Plant.Red`: the enumeration needs no name after that of its namespace.
         let held = held.or_else(|| self.enumerator_in(site, space, last).filter(|_| sense == Sense::Value));
         // `System.Math.Sqrt` is the standard function.
-        let is_standard = sense == Sense::Callee && self.spaces[space.0].name.starts_with("System.");
+        let is_standard = sense == Sense::Callee && prelude::is_standard_space(&self.spaces[space.0].name);
         let standard = || self.library(site.dialect, last, sense).filter(|_| is_standard);
         held.or_else(standard).map_or(Found::Nothing, Found::One)
     }

@@ -1,5 +1,6 @@
 //! The whole program: its instances, its order of routines, what starts it, and whether it fits.
 
+mod chains;
 mod configuration;
 mod escape;
 mod instance_path;
@@ -26,14 +27,17 @@ use staunch_ir::{
 use staunch_runtime::reference::CLASS;
 use std::rc::Rc;
 
-/// Puts the parts together: the classes, the instances, the order of the routines.
+/// Puts the parts together: the classes, the instances, the order of the routines. Unless this `is_last`, recursion by
+/// references is reported: the program is checked once more, with what it refers to.
 pub(crate) fn assemble<'s>(
     declarations: &mut Declarations<'s>,
     files: &'s [ast::File<'s>],
     checked: Checked,
+    is_last: bool,
 ) -> Option<Program> {
-    let stacks = checked.stacks;
-    let (routines, uses) = checked.routines.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+    let mut stacks = checked.stacks;
+    let (routines, mut uses): (_, Vec<_>) =
+        checked.routines.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
     declarations.program.routines = routines;
     let held = declarations.runs().iter().map(|it| Key(it.ast.name.text)).collect();
     let slots = 0..declarations.pous.len();
@@ -41,6 +45,9 @@ pub(crate) fn assemble<'s>(
     declarations.check_named_programs(files);
     configuration::instances(declarations, files);
     declarations.set_instance_paths();
+    if is_last {
+        chains::unroll(declarations, &mut uses, &mut stacks);
+    }
     order::order(declarations, uses, stacks)?;
     declarations.check_pins()?;
     declarations.check_escapes()?;

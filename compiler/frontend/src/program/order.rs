@@ -37,7 +37,7 @@ pub(super) fn order(declarations: &mut Declarations<'_>, uses: Vec<Uses>, stacks
     Some(())
 }
 
-fn all_callees(declarations: &mut Declarations<'_>) -> Vec<Vec<usize>> {
+pub(super) fn all_callees(declarations: &mut Declarations<'_>) -> Vec<Vec<usize>> {
     declarations.program.routines.iter_mut().map(callees).collect()
 }
 

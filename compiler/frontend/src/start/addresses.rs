@@ -2,6 +2,7 @@
 //! in VAR_TEMP, that is at the start of each call, of VAR_STAT and VAR_INST of the first one; elsewhere with the start of
 //! instances. What lives for one call is assigned the values of variables, too.
 
+use super::computed::{Owner, When, is_computed_block};
 use super::expected::{By, Expected, Types};
 use super::varying::Names;
 use crate::Span;
@@ -9,6 +10,7 @@ use crate::ast::{
     BinaryOp, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
     StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind, each_part,
 };
+use crate::spelling::Key;
 use crate::testing::tree::{assign, literal, named, variables};
 
 /// What is assigned before the instances start, whose FB_init may be given it, and after: values of their own
@@ -17,19 +19,50 @@ use crate::testing::tree::{assign, literal, named, variables};
 pub(super) struct Addresses<'s> {
     pub before: Vec<Statement<'s>>,
     pub after: Vec<Statement<'s>>,
+    /// What is assigned once, when the instances have started: PROPERTYs, and what asks for them.
+    pub late: Vec<Statement<'s>>,
 }
 
 impl<'s> Addresses<'s> {
     pub fn is_empty(&self) -> bool {
-        self.before.is_empty() && self.after.is_empty()
+        self.before.is_empty() && self.after.is_empty() && self.late.is_empty()
+    }
+
+    /// Where the first of them is.
+    pub fn first(&self) -> Option<Span> {
+        self.before.first().or(self.late.first()).map(|it| it.span)
+    }
+
+    pub fn append(&mut self, other: Self) {
+        self.before.extend(other.before);
+        self.after.extend(other.after);
+        self.late.extend(other.late);
     }
 
     /// `body` with what is assigned around it.
     pub fn around(self, body: Vec<Statement<'s>>) -> Vec<Statement<'s>> {
-        let Self { mut before, after } = self;
+        let Self { mut before, after, late } = self;
         before.extend(body);
         before.extend(after);
+        before.extend(late);
         before
+    }
+
+    /// All that is assigned where no instance starts in between.
+    fn at_once(self) -> Vec<Statement<'s>> {
+        let Self { mut before, after: _, late } = self;
+        before.extend(late);
+        before
+    }
+
+    /// A value that is computed; of a member when FB_init has been.
+    fn compute(&mut self, target: Expr<'s>, value: Expr<'s>, when: When) {
+        let span = value.span;
+        let statement = Statement { kind: StatementKind::Assign { target, value }, span };
+        match when {
+            When::Before => self.before.push(statement),
+            When::After => self.late.push(statement),
+        }
     }
 
     fn add(&mut self, target: Expr<'s>, value: Expr<'s>, is_bound: bool, is_member: bool) {
@@ -62,8 +95,8 @@ pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, types: &Types<'s>, around: &Names<
     };
     let has_statements = pou.external.is_none() && !pou.is_stub && pou.modifiers.is_abstract.is_none();
     let names = has_statements.then_some(&mut names);
-    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(it)), types, names);
-    pou.body.splice(0..0, found.before);
+    let found = taken(pou.blocks.iter_mut().filter(|it| is_of_calls(it)), types, names, Owner::Other);
+    pou.body.splice(0..0, found.at_once());
     if kind.is_function() {
         for lasting in [VarKind::Stat, VarKind::Inst] {
             let found = once(pou, lasting, types);
@@ -77,14 +110,14 @@ pub(crate) const ADDRESSED: [&str; 2] = ["__stat_addressed", "__inst_addressed"]
 
 /// Takes out of a POU the addresses of variables that outlive its calls: they are assigned once after each start.
 fn once<'s>(pou: &mut Pou<'s>, kind: VarKind, types: &Types<'s>) -> Vec<Statement<'s>> {
-    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), types, None);
-    let Some(first) = found.before.first().map(|it| it.span) else { return Vec::new() };
+    let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), types, None, Owner::Other);
+    let Some(first) = found.first() else { return Vec::new() };
     // No name of the source is there, and what inherits the block has the same mark.
     let at = pou.blocks.iter().find(|it| it.kind == kind).map_or(first, |it| it.span);
     let flag = ADDRESSED[usize::from(kind == VarKind::Inst)];
     pou.blocks.push(VarBlock { kind, ..variables(&[(flag, &["BOOL"])], at) });
     let open = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(flag, at))), span: at };
-    let mut then = found.before;
+    let mut then = found.at_once();
     then.push(assign(flag, literal(LiteralValue::Bool(true), at)));
     let kind = StatementKind::If { branches: vec![(open, then)], otherwise: None };
     vec![Statement { kind, span: at }]
@@ -128,7 +161,8 @@ pub(super) fn of_state<'s>(pou: &mut Pou<'s>, types: &Types<'s>) -> Addresses<'s
     let is_state = |it: &&mut VarBlock<'s>| {
         matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output) || is_lasting && it.kind == VarKind::Stat
     };
-    let mut found = taken(pou.blocks.iter_mut().filter(is_state), types, None);
+    let owner = Owner::Pou(Key(pou.name.text));
+    let mut found = taken(pou.blocks.iter_mut().filter(is_state), types, None, owner);
     let shared = once(pou, VarKind::Stat, types);
     found.before.splice(0..0, shared);
     found
@@ -139,20 +173,30 @@ pub(super) fn taken<'a, 's: 'a>(
     blocks: impl Iterator<Item = &'a mut VarBlock<'s>>,
     types: &Types<'s>,
     mut names: Option<&mut Names<'_, 's>>,
+    owner: Owner<'s>,
 ) -> Addresses<'s> {
     let mut found = Addresses::default();
     // What writes to a CONSTANT is refused.
-    for decl in blocks.filter(|it| !it.has_values()).flat_map(|it| &mut it.vars) {
-        take(decl, types, names.as_deref(), &mut found);
-        if let Some(names) = &mut names {
-            names.give(&decl.names);
+    for block in blocks.filter(|it| !it.has_values()) {
+        let owner = if is_computed_block(block) { owner } else { Owner::Other };
+        for decl in &mut block.vars {
+            take(decl, types, (names.as_deref(), owner), &mut found);
+            if let Some(names) = &mut names {
+                names.give(&decl.names);
+            }
         }
     }
     found
 }
 
-fn take<'s>(decl: &mut VarDecl<'s>, types: &Types<'s>, names: Option<&Names<'_, 's>>, found: &mut Addresses<'s>) {
-    if decl.initial.as_ref().is_none_or(|it| !holds_address(it, Expected::variable(&decl.ty, types, names))) {
+fn take<'s>(
+    decl: &mut VarDecl<'s>,
+    types: &Types<'s>,
+    (names, owner): (Option<&Names<'_, 's>>, Owner<'s>),
+    found: &mut Addresses<'s>,
+) {
+    let expected = Expected::variable(&decl.ty, types, names).of(owner);
+    if decl.initial.as_ref().is_none_or(|it| !holds_address(it, expected)) {
         return;
     }
     let initial = decl.initial.take();
@@ -161,7 +205,7 @@ fn take<'s>(decl: &mut VarDecl<'s>, types: &Types<'s>, names: Option<&Names<'_, 
     }
     for name in decl.names.clone() {
         let target = Expr { kind: ExprKind::Name(name), span: name.span };
-        let expected = Expected::variable(&decl.ty, types, names);
+        let expected = Expected::variable(&decl.ty, types, names).of(owner);
         decl.initial = initial.clone().and_then(|it| rest(it, &target, expected, found));
     }
 }
@@ -169,12 +213,16 @@ fn take<'s>(decl: &mut VarDecl<'s>, types: &Types<'s>, names: Option<&Names<'_, 
 fn holds_address<'s>(initial: &Initial<'s>, expected: Expected<'_, 's>) -> bool {
     match &initial.kind {
         InitialKind::Bind(_) => true,
-        InitialKind::Value(value) => is_address(value) || expected.by(value).is_some(),
+        InitialKind::Value(value) => {
+            is_address(value) || expected.by(value).is_some() || expected.when(value).is_some()
+        }
         InitialKind::Elements(elements) => {
             let Some((_, element)) = expected.row() else { return false };
             elements.iter().flat_map(|it| &it.values).any(|it| holds_address(it, element))
         }
-        InitialKind::Fields(fields) => fields.iter().any(|(name, it)| holds_address(it, expected.member(*name))),
+        InitialKind::Fields(fields) => {
+            fields.iter().any(|(name, it)| expected.is_property(*name) || holds_address(it, expected.member(*name)))
+        }
     }
 }
 
@@ -201,7 +249,13 @@ fn rest<'s>(
             return None;
         }
         InitialKind::Value(value) => match expected.by(&value) {
-            None if !is_address(&value) => InitialKind::Value(value),
+            None if !is_address(&value) => match expected.when(&value) {
+                None => InitialKind::Value(value),
+                Some(when) => {
+                    found.compute(target.clone(), value, if is_member { When::After } else { when });
+                    return None;
+                }
+            },
             by => {
                 found.add(target.clone(), value, by == Some(By::Binding), is_member);
                 return None;
@@ -229,7 +283,13 @@ fn of_fields<'s>(
 ) -> Vec<(Name<'s>, Initial<'s>)> {
     let one = |(name, initial): (Name<'s>, Initial<'s>)| {
         let member = Expr { kind: ExprKind::Member(Box::new(target.clone()), name), span: name.span };
-        Some((name, rest(initial, &member, expected.member(name), found)?))
+        match initial.kind {
+            InitialKind::Value(value) if expected.is_property(name) => {
+                found.compute(member, value, When::After);
+                None
+            }
+            _ => Some((name, rest(initial, &member, expected.member(name), found)?)),
+        }
     };
     fields.into_iter().filter_map(one).collect()
 }

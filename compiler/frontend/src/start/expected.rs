@@ -1,6 +1,7 @@
 //! What types variables and their members are declared with, as far as initial values ask: whether `i` in `(i := a)` is of
 //! an INTERFACE, or a REFERENCE TO.
 
+use super::computed::{Computed, Owner, When};
 use super::varying::Names;
 use crate::Span;
 use crate::ast::{Bound, Expr, ExprKind, File, Item, Name, PouKind, TypeKind, TypeSpec, UnaryOp, VarDecl};
@@ -18,13 +19,16 @@ pub(super) struct Types<'s> {
     aliases: FxHashMap<Key<'s>, TypeSpec<'s>>,
     /// The files in which a REFERENCE TO is bound by `:=`.
     binding: FxHashSet<u16>,
+    /// What initial values ask for that are computed.
+    computed: Computed<'s>,
 }
 
 impl<'s> Types<'s> {
     pub fn of(files: &[File<'s>], binds: &dyn Fn(Span) -> bool) -> Self {
         let at = |file| Span { file, start: 0, end: 0 };
         let binding = (0..).take(files.len()).filter(|it| binds(at(*it))).collect();
-        let mut types = Self { binding, ..Self::default() };
+        let computed = Computed::of(files, &|file| u16::try_from(file).is_ok_and(|it| binds(at(it))));
+        let mut types = Self { binding, computed, ..Self::default() };
         let declared = names(files);
         for item in files.iter().flat_map(|it| &it.items) {
             match item {
@@ -109,6 +113,7 @@ pub(super) struct Expected<'a, 's> {
     types: &'a Types<'s>,
     /// Where values of variables are assigned, too.
     names: Option<&'a Names<'a, 's>>,
+    owner: Owner<'s>,
     /// It is a part of an instance or a structure, `(i := a)`.
     pub is_member: bool,
 }
@@ -118,7 +123,30 @@ const DEPTH: usize = 16;
 
 impl<'a, 's> Expected<'a, 's> {
     pub fn variable(ty: &'a TypeSpec<'s>, types: &'a Types<'s>, names: Option<&'a Names<'a, 's>>) -> Self {
-        Self { ty: Some(ty), types, names, is_member: false }
+        Self { ty: Some(ty), types, names, owner: Owner::Other, is_member: false }
+    }
+
+    /// Where these are the values of a POU's state, or of global variables.
+    #[must_use]
+    pub fn of(self, owner: Owner<'s>) -> Self {
+        Self { owner, ..self }
+    }
+
+    /// When a value is assigned that is computed as the program starts.
+    pub fn when(&self, value: &Expr<'s>) -> Option<When> {
+        let is_reference = matches!(self.kind(), Some(TypeKind::Reference { kind: RefKind::ReferenceTo, .. }));
+        let may_be = !is_reference && self.types.binding.contains(&value.span.file);
+        may_be.then(|| self.types.computed.when_computed(value, self.owner)).flatten()
+    }
+
+    /// Whether a name in the value of an instance is a PROPERTY's, which is assigned when the instance has started.
+    pub fn is_property(&self, name: Name<'s>) -> bool {
+        let has_start = match self.owner {
+            Owner::Globals | Owner::Pou(_) => true,
+            Owner::Other => self.names.is_some(),
+        };
+        let Some(TypeKind::Named(path)) = self.kind() else { return false };
+        has_start && path.last().is_some_and(|it| self.types.computed.is_property(Key(it.text), Key(name.text)))
     }
 
     /// The type with the names of others resolved.

@@ -219,6 +219,10 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
         let kind = match input.kind() {
             Kind::Dot if is_number(&expr) && foreign_syntax::ends_line(input) => break,
             Kind::Dot => member(input, expr)?,
+            // `a [:=] b`
+            Kind::OpenBracket if input.kind_ahead(1) == Kind::Assign && input.kind_ahead(2) == Kind::CloseBracket => {
+                break;
+            }
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
             Kind::Minus if foreign_syntax::arrow(input) => named_member(input, expr)?,

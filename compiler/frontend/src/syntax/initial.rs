@@ -101,5 +101,20 @@ fn element<'t, 's: 't>() -> impl Rule<'t, 's, Element<'s>> {
     let values = delimited(Kind::OpenParen, list_before(Kind::CloseParen, initial()), Kind::CloseParen);
     let repeated = count.then(values).map(|(count, values)| Element { count: Some(count), values });
     let single = initial().map(|it| Element { count: None, values: vec![it] });
-    ahead(is_repeat).ignore_then(repeated).or(ahead(|input| !is_repeat(input)).ignore_then(single))
+    let named = name().map(|name| Expr { span: name.span, kind: ExprKind::Name(name) });
+    let values = delimited(Kind::OpenParen, list_before(Kind::CloseParen, initial()), Kind::CloseParen);
+    let named = named.then(values).map(|(count, values)| Element { count: Some(count), values });
+    let is_single = |input: &mut In<'_, '_, 's>| !is_repeat(input) && !is_named_repeat(input);
+    choice((
+        ahead(is_repeat).ignore_then(repeated),
+        ahead(is_named_repeat).ignore_then(named),
+        ahead(is_single).ignore_then(single),
+    ))
+}
+
+/// `COUNT((x := 1))`: as a call it would make no sense.
+fn is_named_repeat(input: &mut In<'_, '_, '_>) -> bool {
+    let is_given = |input: &mut In<'_, '_, '_>| input.kind_ahead(4) == Kind::Assign || binds(input, 4);
+    let opens = (input.kind(), input.kind_ahead(1), input.kind_ahead(2), input.kind_ahead(3));
+    opens == (Kind::Name, Kind::OpenParen, Kind::OpenParen, Kind::Name) && is_given(input)
 }

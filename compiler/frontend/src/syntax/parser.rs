@@ -134,6 +134,8 @@ pub struct State<'t, 's> {
     pub bindings: Vec<Binding<'s>>,
     /// What is reported of `a += b`, if the dialect does not have it.
     pub combined: Vec<Diagnostic>,
+    /// The targets of `a [:=] b`, which Logix has.
+    pub nonretentive: Vec<Span>,
     pub regions: Vec<Region<'s>>,
     /// Of these, the ones around the current place.
     pub around: Vec<usize>,
@@ -167,6 +169,7 @@ impl<'t, 's> State<'t, 's> {
             nested: Vec::new(),
             bindings: Vec::new(),
             combined: Vec::new(),
+            nonretentive: Vec::new(),
             regions: vec![whole],
             around: vec![0],
             ended: false,

@@ -3,7 +3,10 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Access, Item, Modifiers, Name, Pou, PouKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{
+        Access, Expr, ExprKind, Item, Modifiers, Name, Pou, PouKind, Statement, StatementKind, TypeKind, TypeSpec,
+        VarBlock, VarDecl, VarKind,
+    },
     lex::Kind,
     source::Span,
 };
@@ -12,6 +15,7 @@ use super::{
     combinator::{Rule, ahead, name, rule, token},
     declaration::{ACCESSES, access, before_name, type_spec},
     diagnostics, doc,
+    expression::expression,
     parser::{In, TokenReader},
     pragma::attributes_here,
     recovery,
@@ -140,11 +144,13 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
         recovery::skip_head(input);
         (Modifiers::default(), Name { text: "", span: opened }, None)
     });
+    let is_property = input.text(opened).eq_ignore_ascii_case(PROPERTY);
+    let starts_with = if is_property { start_of_property(input) } else { None };
     input.eat(Kind::Semicolon);
     let modifiers = modifiers.or(before);
     let mut pou = Pou { modifiers, result, attributes, doc, ..Pou::new(kind, name, opened.to(name.span)) };
-    if input.text(opened).eq_ignore_ascii_case(PROPERTY) {
-        return property(input, &pou, opened, contents);
+    if is_property {
+        return property(input, (&pou, starts_with), opened, contents);
     }
     take_value(&mut pou);
     body(input, &mut pou, end, opened, contents);
@@ -156,6 +162,19 @@ fn routine<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind, contents: C
         pou.blocks.clear();
     }
     vec![pou]
+}
+
+/// `PROPERTY State : INT := 3`: what its GET gives where it assigns nothing, as TwinCAT has it.
+fn start_of_property<'s>(input: &mut In<'_, '_, 's>) -> Option<Expr<'s>> {
+    input.eat(Kind::Assign)?;
+    let value = expression(input);
+    value.map_err(|problem| diagnostics::report(input, problem)).ok()
+}
+
+fn assigned<'s>(name: Name<'s>, value: Expr<'s>) -> Statement<'s> {
+    let span = value.span;
+    let target = Expr { kind: ExprKind::Name(name), span: name.span };
+    Statement { kind: StatementKind::Assign { target, value }, span }
 }
 
 /// VAR blocks and statements up to an end.
@@ -182,7 +201,12 @@ fn close(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
 }
 
 /// GET and SET, up to END_PROPERTY.
-fn property<'s>(input: &mut In<'_, '_, 's>, head: &Pou<'s>, opened: Span, contents: Contents) -> Vec<Pou<'s>> {
+fn property<'s>(
+    input: &mut In<'_, '_, 's>,
+    (head, starts_with): (&Pou<'s>, Option<Expr<'s>>),
+    opened: Span,
+    contents: Contents,
+) -> Vec<Pou<'s>> {
     let mut accessors: Vec<Pou<'s>> = Vec::new();
     let mut head = head.clone();
     if head.result.is_none() {
@@ -203,6 +227,8 @@ fn property<'s>(input: &mut In<'_, '_, 's>, head: &Pou<'s>, opened: Span, conten
             input.eat(Kind::Semicolon);
         } else {
             body(input, &mut pou, end, opened, contents);
+            let value = starts_with.clone().filter(|_| kind == PouKind::Getter);
+            pou.body.splice(0..0, value.map(|it| assigned(head.name, it)));
         }
         accessors.push(pou);
     }

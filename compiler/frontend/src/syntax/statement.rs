@@ -208,6 +208,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             input.report(it);
             assignment(input, target)?
         }
+        Kind::OpenBracket => nonretentive(input, target)?,
         Kind::Colon => return split_assign(input, target),
         Kind::PlusEqual | Kind::MinusEqual | Kind::StarEqual | Kind::SlashEqual => combined(input, target)?,
         Kind::Attempt => {
@@ -246,6 +247,16 @@ fn combined<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Statemen
     let right = Expr { span: value.span, kind: ExprKind::Paren(Box::new(value)) };
     let span = target.span.to(right.span);
     let value = Expr { kind: ExprKind::Binary(Box::new([target.clone(), right]), op, sign), span };
+    Ok(StatementKind::Assign { target, value })
+}
+
+/// `a [:=] b`
+fn nonretentive<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    for _ in 0..3 {
+        input.take();
+    }
+    input.state().nonretentive.push(target.span);
+    let value = expression(input)?;
     Ok(StatementKind::Assign { target, value })
 }
 

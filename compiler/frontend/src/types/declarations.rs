@@ -56,7 +56,8 @@ pub(crate) struct PouSlot<'s> {
     pub words: Vec<Class>,
     /// Of a generic FUNCTION as calls ask for it.
     pub instance: Option<Instance>,
-    /// Of a routine that chooses, for many calls, by the class of an instance.
+    /// Of a routine that nobody writes: one that chooses, for many calls, by the class of an instance, or a copy for the next
+    /// level of a chain of instances.
     pub dispatch: Option<Box<Routine>>,
     pub slot: Slot<Rc<Signature<'s>>>,
 }

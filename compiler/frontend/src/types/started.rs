@@ -95,10 +95,15 @@ impl Declarations<'_> {
         }
     }
 
+    /// Whether the start of a class's instances assigns initial values.
+    pub fn assigns_at_start(&self, class: usize) -> bool {
+        let start = self.pous[class].routines.get(&Key(START)).and_then(|it| it.called);
+        start.is_some_and(|(slot, _)| self.pous[slot].ast.attributes.contains(&ADDRESSES))
+    }
+
     /// Whether something in a structure has a start, or an address as its initial value.
     pub fn has_started_parts(&mut self, id: StructId) -> bool {
-        let start = self.slot_of_instance(id).and_then(|it| self.pous[it].routines.get(&Key(START))?.called);
-        if start.is_some_and(|(slot, _)| self.pous[slot].ast.attributes.contains(&ADDRESSES)) {
+        if self.slot_of_instance(id).is_some_and(|it| self.assigns_at_start(it)) {
             return true;
         }
         if self.has_addresses(id) {

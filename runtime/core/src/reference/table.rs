@@ -184,8 +184,7 @@ impl<'t> Table<'t> {
     /// What lies at `distance` bytes from where a reference points, as `view` wants to see it.
     pub fn part(&self, bits: u64, distance: u64, view: View) -> Result<Part, FaultKind> {
         let (offset, rest) = self.locate(bits, distance)?;
-        let fits = |size: usize| size <= rest && offset.checked_rem(size) == Some(0);
-        if matches!(view, View::Number(size) if fits(size as usize)) && self.is_plain(bits) {
+        if matches!(view, View::Number(size) if size as usize <= rest) && self.is_plain(bits) {
             return Ok(Part::Bytes { at: offset, rest });
         }
         let around = self.around(bits);
@@ -204,8 +203,7 @@ impl<'t> Table<'t> {
             (encode::TEXT, View::Number(2)) if found.node.string_type().wide => self.units(found, index),
             (encode::TEXT, View::Text { wide }) if found.node.string_type().wide == wide => self.units(found, index),
             (encode::NUMBERS, View::Number(size)) => {
-                let fits = size as usize <= left.min(rest) && offset.checked_rem(size as usize) == Some(0);
-                if fits {
+                if size as usize <= left.min(rest) {
                     Ok(Part::Bytes { at: offset, rest: left.min(rest) })
                 } else {
                     self.spread(around, offset, rest, view)
@@ -227,9 +225,6 @@ impl<'t> Table<'t> {
     fn spread(&self, around: Option<Found>, offset: usize, rest: usize, view: View) -> Result<Part, FaultKind> {
         let View::Number(size) = view else { return Err(FaultKind::ForbiddenView) };
         let size = size as usize;
-        if offset.checked_rem(size) != Some(0) {
-            return Err(FaultKind::MisalignedReference);
-        }
         if rest < size {
             return Err(FaultKind::OutsideObject);
         }

@@ -64,6 +64,10 @@ impl<'p> Builder<'p> {
                 id.info().instructions[instruction].prescan?;
                 Some(StatementKind::PrescanBlock { block: target, instruction })
             }
+            Preparation::Zero => {
+                let zero = self.program.repr(target.ty)?.zero();
+                Some(StatementKind::Assign { value: Expr::new(target.ty.read(), ExprKind::Const(zero), at), target })
+            }
             Preparation::Bit { shift: None, value } => {
                 Some(StatementKind::Assign { target, value: Expr::bool(value, at) })
             }
