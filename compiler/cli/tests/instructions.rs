@@ -37,8 +37,26 @@ struct Subject {
     program: String,
 }
 
-fn subject(path: PathBuf) -> Subject {
-    let text = fs::read_to_string(&path).unwrap();
+impl Subject {
+    fn of_several(mut self, dialect: &str) -> Self {
+        self.name = format!("{}.{dialect}", self.name);
+        self
+    }
+}
+
+/// A program in each of the dialects that it names, else in the default one.
+fn subjects_of(path: &Path) -> Vec<Subject> {
+    let text = fs::read_to_string(path).unwrap();
+    let named = text.lines().find_map(|line| line.strip_prefix("// dialect: ")).unwrap_or_default();
+    let dialects: Vec<_> = named.split_whitespace().collect();
+    match dialects.as_slice() {
+        [] => vec![subject(path, &text, None)],
+        [one] => vec![subject(path, &text, Some(*one))],
+        several => several.iter().map(|it| subject(path, &text, Some(*it)).of_several(it)).collect(),
+    }
+}
+
+fn subject(path: &Path, text: &str, dialect: Option<&str>) -> Subject {
     let heads = |key: &str| -> Vec<String> {
         let start = format!("// {key}: ");
         text.lines().filter_map(|line| line.strip_prefix(&start)).map(str::to_owned).collect()
@@ -48,18 +66,18 @@ fn subject(path: PathBuf) -> Subject {
     let program = text.lines().filter_map(|line| line.strip_prefix("PROGRAM ")).next_back().unwrap();
     Subject {
         name: path.file_stem().unwrap().to_str().unwrap().to_owned(),
-        dialect: heads("dialect").pop(),
+        dialect: dialect.map(str::to_owned),
         scans: heads("scans").pop().unwrap().parse().unwrap(),
         inputs: heads("in").iter().map(input).collect(),
         program: program.trim().to_uppercase(),
-        path,
+        path: path.to_owned(),
     }
 }
 
 fn subjects() -> Vec<Subject> {
     let mut paths: Vec<_> = fs::read_dir(perf().join("programs")).unwrap().map(|it| it.unwrap().path()).collect();
     paths.sort();
-    paths.into_iter().map(subject).collect()
+    paths.iter().flat_map(|it| subjects_of(it)).collect()
 }
 
 /// C that calls the scans, and prints a hash of the state that they leave.
