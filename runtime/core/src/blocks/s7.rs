@@ -8,13 +8,17 @@ use crate::block::pins;
 
 /// `CTU`: counts up on each rising edge of `cu`, also past `pv`.
 pub type Ctu<T> = iec::Ctu<T>;
-/// `CTD`: counts down on each rising edge of `cd`, also below 0. While `ld`, `cv` is `pv`.
-pub type Ctd<T> = iec::Ctd<T>;
-/// `CTUD`: both; two edges in one call leave `cv` alone.
-pub type Ctud<T> = iec::Ctud<T>;
+/// `CTD`: `ld` is a level.
+pub type Ctd<T> = Down<T, false>;
+/// `CTUD`: `ld` is a level.
+pub type Ctud<T> = Both<T, false>;
+/// `CTD` as the option `s7-ld = "edge"` has it.
+pub type CtdLdEdge<T> = Down<T, true>;
+/// `CTUD` as the option `s7-ld = "edge"` has it.
+pub type CtudLdEdge<T> = Both<T, true>;
 
-/// `CTD` as the option `s7-ld = "edge"` has it: `pv` is loaded when `ld` becomes TRUE, also in the first call; while `ld`,
-/// nothing counts.
+/// Counts down on each rising edge of `cd`, also below 0; `q` while `cv <= 0`. While `ld`, nothing counts; `pv` is loaded in
+/// each call with it, or, if `EDGE`, in the first of them.
 ///
 /// ```
 /// let mut parts = staunch_runtime::s7::CtdLdEdge::<i16>::new();
@@ -24,7 +28,7 @@ pub type Ctud<T> = iec::Ctud<T>;
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CtdLdEdge<T> {
+pub struct Down<T, const EDGE: bool> {
     pub cd: bool,
     pub ld: bool,
     pub pv: T,
@@ -36,7 +40,7 @@ pub struct CtdLdEdge<T> {
     pub ld_before: bool,
 }
 
-impl<T: Count> CtdLdEdge<T> {
+impl<T: Count, const EDGE: bool> Down<T, EDGE> {
     /// One call: sets the inputs and counts.
     #[inline]
     pub fn call(&mut self, cd: bool, ld: bool, pv: T) {
@@ -48,7 +52,7 @@ impl<T: Count> CtdLdEdge<T> {
     #[inline]
     pub fn step(&mut self, _: &Context) {
         let down = self.cd & !self.cd_before & !self.ld;
-        let loads = self.ld & !self.ld_before;
+        let loads = self.ld & !(EDGE & self.ld_before);
         (self.cd_before, self.ld_before) = (self.cd, self.ld);
         let counted = self.cv.saturating_sub(T::from(down));
         self.cv = if loads { self.pv } else { counted };
@@ -56,17 +60,18 @@ impl<T: Count> CtdLdEdge<T> {
     }
 }
 
-pins!([T: Count] CtdLdEdge<T> {
+pins!([T: Count, const EDGE: bool] Down<T, EDGE> {
     Input { cd: BOOL = "CD" as Down, ld: BOOL = "LD" as Load, pv: T = "PV" as Preset }
     Output { q: BOOL = "Q" as Done, cv: T = "CV" as Count }
     Memory { cd_before: BOOL = "cd_before", ld_before: BOOL = "ld_before" }
 });
 
-/// `CTUD` as the option `s7-ld = "edge"` has it: as [`CtdLdEdge`]. While `r`, what `ld` does has no effect, so that an edge
-/// of it there is used up.
+/// Counts up on each rising edge of `cu` and down on each of `cd`; both in one call leave `cv` alone. `qu` while `cv >= pv`,
+/// `qd` while `cv <= 0`. Reset wins over load, load over counting; `ld` is as in [`Down`]. While `r`, what `ld` does has no
+/// effect, so that an edge of it there is used up.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CtudLdEdge<T> {
+pub struct Both<T, const EDGE: bool> {
     pub cu: bool,
     pub cd: bool,
     pub r: bool,
@@ -83,7 +88,7 @@ pub struct CtudLdEdge<T> {
     pub ld_before: bool,
 }
 
-impl<T: Count> CtudLdEdge<T> {
+impl<T: Count, const EDGE: bool> Both<T, EDGE> {
     /// One call: sets the inputs and counts.
     #[inline]
     pub fn call(&mut self, cu: bool, cd: bool, r: bool, ld: bool, pv: T) {
@@ -96,7 +101,7 @@ impl<T: Count> CtudLdEdge<T> {
     pub fn step(&mut self, _: &Context) {
         let up = self.cu & !self.cu_before & !self.ld;
         let down = self.cd & !self.cd_before & !self.ld;
-        let loads = self.ld & !self.ld_before;
+        let loads = self.ld & !(EDGE & self.ld_before);
         (self.cu_before, self.cd_before, self.ld_before) = (self.cu, self.cd, self.ld);
         let raised = self.cv.saturating_add(T::from(up & !down));
         let counted = raised.saturating_sub(T::from(down & !up));
@@ -107,7 +112,7 @@ impl<T: Count> CtudLdEdge<T> {
     }
 }
 
-pins!([T: Count] CtudLdEdge<T> {
+pins!([T: Count, const EDGE: bool] Both<T, EDGE> {
     Input {
         cu: BOOL = "CU" as Up, cd: BOOL = "CD" as Down, r: BOOL = "R" as Reset, ld: BOOL = "LD" as Load,
         pv: T = "PV" as Preset,
