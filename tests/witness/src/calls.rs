@@ -532,7 +532,9 @@ impl<'a> Machine<'a> {
                     // The standard: "in exactly the same order" as they are declared.
                     let mut free: Vec<&Formal<'a>> = match self.declared.family {
                         Family::Iec | Family::Cscape | Family::Openplc | Family::Openplc4 => formals.iter().collect(),
-                        Family::Codesys | Family::Logix => outputs_last(false).chain(outputs_last(true)).collect(),
+                        Family::Codesys | Family::Logix | Family::S7 => {
+                            outputs_last(false).chain(outputs_last(true)).collect()
+                        }
                     };
                     let free = free.drain(..).find(|it| !taken.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
                     let Some(free) = free else { return unknown("an argument too many") };

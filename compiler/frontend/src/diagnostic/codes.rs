@@ -144,6 +144,7 @@ codes! {
     E0901 Error "too large";
     E0902 Error "not supported yet";
     E0903 Error "too many temporary variables";
+    E0904 Error "a counter of S5";
     W0301 Warning "RCV is not retained";
     W0302 Warning "RETAIN does not keep this count";
     W0303 Warning "a block that starts anew at each call";
@@ -178,5 +179,6 @@ codes! {
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";
     W0612 Warning "a counter's own output resets it";
+    W0613 Warning "a preset that moves under a load";
     W0616 Warning "a count down on the falling edge";
 }

@@ -52,7 +52,7 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
         return Ok(Verdict::Rejected("it is refused".to_owned()));
     };
     let table = Table::parse(&case.pinned(Pin::Scan))?;
-    if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises {
+    if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises || settings.options.s7_ld_edge {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
     // The witness knows families, and SCL is of none.
