@@ -27,10 +27,12 @@ fn table() -> String {
         let shown: Vec<_> = shown.iter().map(|(evidence, names)| format!("{}: {evidence}", names.join(" "))).collect();
         writeln!(text, "| {} | {} |", row.rule, shown.join("; ")).unwrap();
     }
-    text.push_str("\nThese rules are known and not followed: a program that uses the type may have another value on the system.\n");
+    text.push_str(
+        "\nThese rules are known and not followed: a program that uses this may have another value on the system.\n",
+    );
     text.push_str("\n| dialect | uses | there | shown by |\n|---|---|---|---|\n");
     for it in rules::NOT_FOLLOWED {
-        let (dialect, uses) = (it.dialect.name(), it.uses.name());
+        let (dialect, uses) = (it.dialect.name(), it.uses.words());
         writeln!(text, "| `{dialect}` | {uses} | {} | {} |", it.what, it.evidence).unwrap();
     }
     text

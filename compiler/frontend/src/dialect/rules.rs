@@ -3,7 +3,8 @@
 //! is in the runtime. `docs/dialects.md` has the same table, which a test holds equal.
 
 use super::Dialect;
-use staunch_runtime::Elementary;
+pub use staunch_ir::Use;
+use staunch_runtime::{Class, Elementary};
 
 /// How one dialect computes.
 #[derive(Debug)]
@@ -583,21 +584,8 @@ pub struct NotFollowed {
     /// What the system does.
     pub what: &'static str,
     pub evidence: &'static str,
+    /// What a program has to have for the rule to matter.
     pub uses: Use,
-}
-
-/// What a program has to have for a rule to matter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
-    Type(Elementary),
-}
-
-impl Use {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Type(it) => it.name(),
-        }
-    }
 }
 
 /// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect, and a real is
@@ -623,8 +611,12 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
         SIEMENS_DATES,
     ),
-    not_followed(Dialect::Openplc4, Elementary::Real, HALVES, "STruC++ 0.6.1, run"),
-    not_followed(Dialect::Openplc4, Elementary::Lreal, HALVES, "STruC++ 0.6.1, run"),
+    NotFollowed {
+        dialect: Dialect::Openplc4,
+        what: HALVES,
+        evidence: "STruC++ 0.6.1, run",
+        uses: Use::Conversion(Class::Real, Class::Elementary),
+    },
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
 

@@ -70,6 +70,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
         let target = Type::Elementary(to);
         let rules = self.decl.dialect(span).rules();
+        self.note_conversion(value.ty, target, span);
         if from.is_char() || to.is_char() {
             return self.character_and_number(value, from, to, span);
         }
@@ -126,6 +127,7 @@ impl<'s> Checker<'_, 's> {
 
     /// A number as one of another type. Of a real that an integer type does not hold, the dialect says what it becomes.
     pub(super) fn number_as(&mut self, value: Expr, to: Elementary, span: Span) -> Expr {
+        self.note_conversion(value.ty, Type::Elementary(to), span);
         let is_real = value.ty.elementary().is_some_and(Elementary::is_real);
         let cut = is_real && to.is_integral() && to != Elementary::Bool;
         let value = match cut && self.decl.dialect(span).rules().keeps_low_bits() {
@@ -247,6 +249,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        self.note_conversion(from, Type::Elementary(to), name.span);
         let low_bits = self.decl.dialect(name.span).rules().keeps_low_bits();
         let op = match how {
             Rounding::ToZero if low_bits => {

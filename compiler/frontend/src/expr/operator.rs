@@ -52,6 +52,7 @@ impl<'s> Checker<'_, 's> {
 
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
+        self.note_operator(sides.op.text(), &[&sides.a, &sides.b], sides.op_span);
         if sides.a.is_reference() || sides.b.is_reference() {
             return self.reference_operation(sides);
         }
@@ -128,6 +129,7 @@ impl<'s> Checker<'_, 's> {
         match operand {
             // The meeting of a bit string and an integer is decided; the reprs agree in size or widen.
             Operand::Typed(expr) | Operand::Promoted(expr, _) => {
+                self.note_conversion(expr.ty, Type::Elementary(ty), span);
                 Some(self.convert(Conversion::Value, Type::Elementary(ty), expr))
             }
             literal => self.coerce(literal, Type::Elementary(ty), span),

@@ -12,7 +12,7 @@ use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
     Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind,
-    StringType, TextOp, Type, Value,
+    StringType, TextOp, Type, Use, Value,
 };
 use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
@@ -33,6 +33,7 @@ impl<'s> Checker<'_, 's> {
         let Some((signature, meaning)) = self.form(name, arguments) else {
             if let Some((signature, meaning, ty)) = functions::typed(name.text) {
                 let values = self.arguments(signature, name, arguments, span)?;
+                self.note_use(Use::Function(signature.name), name.span);
                 return self.typed_function(signature, meaning, Type::Elementary(ty), &values, name);
             }
             let parsed = functions::conversion(name.text)?;
@@ -40,6 +41,7 @@ impl<'s> Checker<'_, 's> {
             return self.conversion(parsed, values[0], name).map(Operand::Typed);
         };
         let values = self.arguments(signature, name, arguments, span)?;
+        self.note_use(Use::Function(signature.name), name.span);
         match meaning {
             Meaning::Operator(operator) => self.operator_function(signature, operator, &values, expected, name),
             Meaning::Move => self.operand(values[0], expected),

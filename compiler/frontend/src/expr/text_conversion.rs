@@ -29,6 +29,7 @@ impl<'s> Checker<'_, 's> {
             return self.name_of(value, id, span, name);
         }
         let (value, ty) = self.as_elementary(value, span, name)?;
+        self.note_conversion(value.ty, Type::string(0), name.span);
         let matiec = self.decl.dialect(name.span).rules().has_functions_of_matiec();
         let (op, operand, longest) = match ty {
             Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
@@ -129,6 +130,7 @@ impl<'s> Checker<'_, 's> {
 
     /// `STRING_TO_x`. An integer takes its low bits of the number that the text spells.
     pub(super) fn value_of_text(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        self.note_conversion(text.ty, Type::Elementary(to), span);
         if to.is_char() {
             return self.first_character(text, to, span);
         }
