@@ -35,6 +35,13 @@ fn table() -> String {
         let (dialect, uses) = (it.dialect.name(), it.uses.words());
         writeln!(text, "| `{dialect}` | {uses} | {} | {} |", it.what, it.evidence).unwrap();
     }
+    text.push_str(
+        "\nWhere a vendor leaves a value open, or no page was found that has it, what happens here is a choice:\n",
+    );
+    text.push_str("\n| dialect | what | here | documented |\n|---|---|---|---|\n");
+    for it in rules::EDGES {
+        writeln!(text, "| `{}` | {} | {} | {} |", it.dialect.name(), it.what, it.here, it.documented).unwrap();
+    }
     text
 }
 

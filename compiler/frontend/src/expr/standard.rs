@@ -6,6 +6,7 @@ use super::constant::is_constant;
 use super::operand::{Operand, computed};
 use super::overload::{Resolved, parameter_names};
 use super::text_conversion::MAX_CAPACITY;
+use crate::dialect::rules::LimitCrossed;
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
@@ -162,7 +163,7 @@ impl<'s> Checker<'_, 's> {
         }
         let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
         let value = match (op, ty) {
-            (Op::Limit, Type::Elementary(_)) if matiec => self.apply(Op::LimitLow, ty, operands, ty, span),
+            (Op::Limit, Type::Elementary(_)) => self.limited(ty, operands, span),
             (_, Type::Elementary(Elementary::Real)) if matiec && is_of_math(op) => {
                 let operands =
                     operands.into_iter().map(|it| self.convert(Conversion::Value, Type::LREAL, it)).collect();
@@ -182,6 +183,16 @@ impl<'s> Checker<'_, 's> {
             _ => self.apply(op, ty, operands, ty, span),
         };
         Some(computed(value?, own))
+    }
+
+    /// LIMIT, as the dialect has it where the bounds are crossed.
+    fn limited(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let op = match self.decl.dialect(span).rules().limit_crossed.choice {
+            LimitCrossed::Maximum => Op::Limit,
+            LimitCrossed::Value => Op::LimitInOrder,
+            LimitCrossed::Minimum => Op::LimitLow,
+        };
+        self.apply(op, ty, operands, ty, span)
     }
 
     /// A fault where the condition does not hold.
@@ -378,13 +389,11 @@ impl<'s> Checker<'_, 's> {
             None => Type::String(made_by(op, &ready)?),
         };
         let at = self.at(span);
-        let bounds = match ready.as_slice() {
-            [_, _, count, position] if op == TextOp::Replace => Some((count.clone(), position.clone())),
-            _ => None,
-        };
+        let range =
+            self.decl.dialect(span).rules().empties_texts_out_of_range().then(|| positions(op, &ready)).flatten();
         let text = self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)?;
-        match bounds.filter(|_| self.decl.dialect(span).rules().replaces_nothing_before()) {
-            Some((count, position)) => self.replaced(text, count, position, span),
+        match range {
+            Some(range) => self.empty_outside(text, &range, span),
             None => Some(text),
         }
     }
@@ -412,6 +421,18 @@ impl<'s> Checker<'_, 's> {
         let place = self.temporary("saved", text.ty);
         self.block.push(Statement::assign(place.clone(), text, at));
         Expr::load(place, at)
+    }
+}
+
+/// The counts and positions of a function on a text, with the least values that S7 takes.
+fn positions(op: TextOp, operands: &[Expr]) -> Option<Vec<(Expr, i64)>> {
+    match (op, operands) {
+        (TextOp::Replace, [_, _, count, position]) | (TextOp::Delete, [_, count, position]) => {
+            Some(vec![(position.clone(), 1), (count.clone(), 0)])
+        }
+        (TextOp::Mid, [_, _, position]) => Some(vec![(position.clone(), 1)]),
+        (TextOp::Insert, [_, _, position]) => Some(vec![(position.clone(), 0)]),
+        _ => None,
     }
 }
 
