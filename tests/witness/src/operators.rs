@@ -38,6 +38,12 @@ impl<'a> Machine<'a> {
                 _ => {}
             }
         }
+        let of_bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
+        // A negative one is a DINT, with zeros above it beside 64 bits.
+        let is_filled = |it: &Expr<'_>| untyped(it).is_some() && literal_number(it).is_none_or(|it| it < 0);
+        if of_bits && self.declared.family == Family::Logix && [left, right].into_iter().any(is_filled) {
+            return unknown("the bits of an immediate value in Logix");
+        }
         let (a, b) = self.sides(frame, left, right, asked)?;
         self.operate(op, a, b, at, asked)
     }

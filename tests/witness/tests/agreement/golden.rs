@@ -57,7 +57,7 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     }
     // The witness knows families, and SCL is of none.
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
-    let own = ["**", "_TO_STRING", "STRING_TO_", "EN :", " / ", " MOD ", "MID(", "DELETE(", "INSERT(", "LIMIT("];
+    let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "EN :", " / ", "MID(", "DELETE(", "INSERT(", "LIMIT("];
     if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
         return Ok(Verdict::Rejected("a function, a division, the text of a number, or an EN, in SCL".to_owned()));
     }
