@@ -339,6 +339,12 @@ impl Dialect {
         matches!(self, Self::Codesys | Self::Siemens)
     }
 
+    /// `T#5m68s`: S7 has `500h10000ms` among its examples (S7-1200 manual V4.2, table 5-32), and MATIEC adds the units. The
+    /// standard, and CODESYS, let only the first unit overflow.
+    pub const fn takes_lower_units_that_overflow(self) -> bool {
+        matches!(self, Self::Siemens | Self::Openplc | Self::Openplc4 | Self::Logix)
+    }
+
     /// SEL and MUX evaluate only the input that is chosen, and MUX takes the last one for a K beyond it.
     pub const fn chooses_inputs(self) -> bool {
         matches!(self, Self::Codesys)

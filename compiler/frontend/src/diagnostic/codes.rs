@@ -97,6 +97,7 @@ codes! {
     E0210 Error "an instance is not a value";
     E0211 Error "a reference is needed, or cannot be made";
     E0212 Error "a reference that outlives what it refers to";
+    E0214 Error "a lower unit of a TIME overflows";
     W0202 Warning "a text is cut";
     E0301 Error "unknown pin or parameter";
     E0302 Error "wrong number of arguments";
@@ -174,6 +175,9 @@ codes! {
     W0517 Warning "a name of the standard's is declared again";
     W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
+    W0523 Warning "division by the constant 0";
+    W0524 Warning "immediate values give more than a DINT holds";
+    W0525 Warning "a lower unit of a TIME overflows";
     W0526 Warning "a body reads its own EN";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";

@@ -15,7 +15,9 @@ impl<'s> Checker<'_, 's> {
     /// enumerators and overloaded functions listen to it.
     pub(crate) fn operand(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Operand> {
         let operand = match &expr.kind {
-            Ast::Literal(literal) => self.literal(literal, expected, expr.span),
+            Ast::Literal(literal) => {
+                self.literal(literal, expected, expr.span).inspect(|it| self.note_literal(it, expr.span))
+            }
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
             Ast::Member(..) | Ast::Index(..) if self.is_part_of_constant(expr) => {
@@ -202,6 +204,11 @@ impl<'s> Checker<'_, 's> {
             return self.negative_literal(**prefix, &literal.value, span).map(Operand::Typed);
         }
         let operand = self.operand(inner, expected)?;
+        match op {
+            UnaryOp::Plus => {}
+            UnaryOp::Neg => self.note_operator("-", &[&operand], span),
+            UnaryOp::Not => self.note_operator("NOT", &[&operand], span),
+        }
         match (op, operand) {
             (UnaryOp::Plus, operand) => Some(operand),
             (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),

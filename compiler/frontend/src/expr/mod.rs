@@ -63,6 +63,7 @@ mod retained;
 pub(crate) mod standard;
 pub(crate) mod start;
 mod string_compare;
+mod system_use;
 pub(crate) mod test_words;
 mod text_conversion;
 mod typed_function;

@@ -6,13 +6,14 @@ use super::constant::is_constant;
 use super::operand::{Operand, computed};
 use super::overload::{Resolved, parameter_names};
 use super::text_conversion::MAX_CAPACITY;
+use crate::dialect::rules::LimitCrossed;
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
     Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind,
-    StringType, TextOp, Type, Value,
+    StringType, TextOp, Type, Use, Value,
 };
 use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
@@ -33,6 +34,7 @@ impl<'s> Checker<'_, 's> {
         let Some((signature, meaning)) = self.form(name, arguments) else {
             if let Some((signature, meaning, ty)) = functions::typed(name.text) {
                 let values = self.arguments(signature, name, arguments, span)?;
+                self.note_use(Use::Function(signature.name), name.span);
                 return self.typed_function(signature, meaning, Type::Elementary(ty), &values, name);
             }
             let parsed = functions::conversion(name.text)?;
@@ -40,6 +42,7 @@ impl<'s> Checker<'_, 's> {
             return self.conversion(parsed, values[0], name).map(Operand::Typed);
         };
         let values = self.arguments(signature, name, arguments, span)?;
+        self.note_use(Use::Function(signature.name), name.span);
         match meaning {
             Meaning::Operator(operator) => self.operator_function(signature, operator, &values, expected, name),
             Meaning::Move => self.operand(values[0], expected),
@@ -160,7 +163,7 @@ impl<'s> Checker<'_, 's> {
         }
         let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
         let value = match (op, ty) {
-            (Op::Limit, Type::Elementary(_)) if matiec => self.apply(Op::LimitLow, ty, operands, ty, span),
+            (Op::Limit, Type::Elementary(_)) => self.limited(ty, operands, span),
             (_, Type::Elementary(Elementary::Real)) if matiec && is_of_math(op) => {
                 let operands =
                     operands.into_iter().map(|it| self.convert(Conversion::Value, Type::LREAL, it)).collect();
@@ -180,6 +183,16 @@ impl<'s> Checker<'_, 's> {
             _ => self.apply(op, ty, operands, ty, span),
         };
         Some(computed(value?, own))
+    }
+
+    /// LIMIT, as the dialect has it where the bounds are crossed.
+    fn limited(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let op = match self.decl.dialect(span).rules().limit_crossed.choice {
+            LimitCrossed::Maximum => Op::Limit,
+            LimitCrossed::Value => Op::LimitInOrder,
+            LimitCrossed::Minimum => Op::LimitLow,
+        };
+        self.apply(op, ty, operands, ty, span)
     }
 
     /// A fault where the condition does not hold.
@@ -376,13 +389,11 @@ impl<'s> Checker<'_, 's> {
             None => Type::String(made_by(op, &ready)?),
         };
         let at = self.at(span);
-        let bounds = match ready.as_slice() {
-            [_, _, count, position] if op == TextOp::Replace => Some((count.clone(), position.clone())),
-            _ => None,
-        };
+        let range =
+            self.decl.dialect(span).rules().empties_texts_out_of_range().then(|| positions(op, &ready)).flatten();
         let text = self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)?;
-        match bounds.filter(|_| self.decl.dialect(span).rules().replaces_nothing_before()) {
-            Some((count, position)) => self.replaced(text, count, position, span),
+        match range {
+            Some(range) => self.empty_outside(text, &range, span),
             None => Some(text),
         }
     }
@@ -410,6 +421,18 @@ impl<'s> Checker<'_, 's> {
         let place = self.temporary("saved", text.ty);
         self.block.push(Statement::assign(place.clone(), text, at));
         Expr::load(place, at)
+    }
+}
+
+/// The counts and positions of a function on a text, with the least values that S7 takes.
+fn positions(op: TextOp, operands: &[Expr]) -> Option<Vec<(Expr, i64)>> {
+    match (op, operands) {
+        (TextOp::Replace, [_, _, count, position]) | (TextOp::Delete, [_, count, position]) => {
+            Some(vec![(position.clone(), 1), (count.clone(), 0)])
+        }
+        (TextOp::Mid, [_, _, position]) => Some(vec![(position.clone(), 1)]),
+        (TextOp::Insert, [_, _, position]) => Some(vec![(position.clone(), 0)]),
+        _ => None,
     }
 }
 

@@ -57,8 +57,9 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     }
     // The witness knows families, and SCL is of none.
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
-    if settings.options.dialect == Dialect::Siemens && (has("**") || has("_TO_STRING") || has("EN :")) {
-        return Ok(Verdict::Rejected("a power, the text of a number, or an EN, in SCL".to_owned()));
+    let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "EN :", " / ", "MID(", "DELETE(", "INSERT(", "LIMIT("];
+    if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
+        return Ok(Verdict::Rejected("a function, a division, the text of a number, or an EN, in SCL".to_owned()));
     }
     let is_computed =
         || ["_TO_", "REAL", "TIME", "TON", "TOF", "TP", "F_TRIG", "F_EDGE", "STRING"].iter().any(|it| has(it));

@@ -1,0 +1,78 @@
+//! Notes what the source uses that systems may compute otherwise: before constants are folded, which leaves no trace.
+
+use super::checker::Checker;
+use super::operand::Operand;
+use crate::Span;
+use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Use};
+use staunch_runtime::Class;
+
+impl Checker<'_, '_> {
+    pub(super) fn note_use(&mut self, found: Use, span: Span) {
+        let at = self.at(span);
+        self.decl.program.uses.note(found, at);
+    }
+
+    pub(super) fn note_operator(&mut self, text: &'static str, operands: &[&Operand], span: Span) {
+        for class in operands.iter().filter_map(|it| class_of(it)) {
+            self.note_use(Use::Operator(text, class), span);
+        }
+    }
+
+    pub(super) fn note_literal(&mut self, literal: &Operand, span: Span) {
+        if let (None, Some(class)) = (literal.typed(), class_of(literal)) {
+            self.note_use(Use::Literal(class), span);
+        }
+    }
+
+    /// From one class of types to another; within one, to another type.
+    pub(super) fn note_conversion(&mut self, from: Type, to: Type, span: Span) {
+        if let (Some(own), Some(class)) = (class(from), class(to))
+            && from != to
+        {
+            self.note_use(Use::Conversion(own, class), span);
+        }
+    }
+
+    /// The elementary types that an operation computes with: what is only assigned or compared cannot leave its type's range.
+    pub(super) fn note_types(&mut self, made: &Expr) {
+        let elementary = |it: &Expr| it.ty.elementary();
+        let types: Vec<Elementary> = match &made.kind {
+            ExprKind::Apply(op, operands) if !chooses(*op) => {
+                operands.iter().chain([made]).filter_map(elementary).collect()
+            }
+            ExprKind::ApplyText(_, operands) => operands.iter().filter_map(elementary).collect(),
+            ExprKind::Convert(_, inner) if elementary(inner) != elementary(made) => {
+                [&**inner, made].into_iter().filter_map(elementary).collect()
+            }
+            ExprKind::Apply(..)
+            | ExprKind::Convert(..)
+            | ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::Load(_) => return,
+        };
+        types.into_iter().for_each(|it| self.decl.program.uses.note(Use::Type(it), made.at));
+    }
+}
+
+fn class_of(operand: &Operand) -> Option<Class> {
+    match operand {
+        Operand::Integer(_) => Some(Class::Int),
+        Operand::Real { .. } => Some(Class::Real),
+        Operand::Typed(_) | Operand::Promoted(..) => class(operand.ty()?),
+    }
+}
+
+/// The narrowest class of a type, if that has values of its own.
+fn class(ty: Type) -> Option<Class> {
+    match ty {
+        Type::Elementary(it) | Type::Subrange(it, _) => Some(it.class()),
+        Type::String(_) => Some(Class::String),
+        Type::Enum(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference(_) => None,
+    }
+}
+
+const fn chooses(op: Op) -> bool {
+    matches!(op, Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne | Op::Min | Op::Max)
+}
