@@ -173,6 +173,7 @@ codes! {
     W0517 Warning "a name of the standard's is declared again";
     W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
+    W0521 Warning "a shift that C leaves undefined";
     W0526 Warning "a body reads its own EN";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
