@@ -10,11 +10,11 @@ pub enum Use {
     Type(Elementary),
     /// A standard function, by its name in the tables: `LEFT`, also where `LEFT_STRING` is written.
     Function(&'static str),
-    /// An operator with an operand of the class: `MOD`. `ADD(a, b)` is `+`.
+    /// An operator with an operand of the class: `MOD`. `ADD(a, b)` is `+`, and the sign `-` is `NEG`.
     Operator(&'static str, Class),
     /// From one class to another, by a function or by itself.
     Conversion(Class, Class),
-    /// A number without a type's name.
+    /// An operand that is a number without a type's name.
     Literal(Class),
 }
 
@@ -26,7 +26,7 @@ impl Use {
             Self::Function(name) => name.to_owned(),
             Self::Operator(operator, class) => format!("`{operator}` of {}", class.name()),
             Self::Conversion(from, to) => format!("{} to {}", from.name(), to.name()),
-            Self::Literal(class) => format!("a literal of {} without a type", class.name()),
+            Self::Literal(class) => format!("an operand of {} without a type", class.name()),
         }
     }
 

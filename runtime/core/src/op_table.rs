@@ -21,7 +21,7 @@ macro_rules! for_each_op {
             Div         "DIV"      div        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    faults;
             Mod         "MOD"      modulo     (IN1: T, IN2: T) -> T                  [ANY_INT as integer]         faults;
             // Those of S7, of OpenPLC the second alone.
-            DivOrZero   "_DIV_0"   div_or_zero (IN1: T, IN2: T) -> T                 [ANY_INT as integer]         total;
+            DivOrZero   "_DIV_0"   div_or_zero (IN1: T, IN2: T) -> T                 [ANY_NUM as number]          total;
             ModOrZero   "_MOD_0"   modulo_or_zero (IN1: T, IN2: T) -> T              [ANY_INT as integer]         total;
             Neg         "NEG"      neg        (IN: T) -> T                           [ANY_MAGNITUDE as number]    total;
             Abs         "ABS"      abs        (IN: T) -> T                           [ANY_NUM as number]          total;
@@ -55,6 +55,16 @@ macro_rules! for_each_op {
             LimitLow    "_LIMIT_LOW" limit_low_first (MN: T, IN: T, MX: T) -> T      [ANY_ELEMENTARY as any]      total;
             // LIMIT on S7.
             LimitInOrder "_LIMIT_IN" limit_in_order (MN: T, IN: T, MX: T) -> T       [ANY_ELEMENTARY as any]      total;
+            TimePlus    "_TIME_ADD" time_plus (IN1: T, IN2: T) -> T                  [ANY_INT as long]            total;
+            TimeMinus   "_TIME_SUB" time_minus (IN1: T, IN2: T) -> T                 [ANY_INT as long]            total;
+            AbsIfBelow  "_ABS"     abs_if_below (IN: T) -> T                         [ANY_NUM as number]          total;
+            // Conversions of both systems that compile to C, as x86-64 makes them.
+            AwayFromZero "_AWAY"   away_from_zero (IN: T) -> LREAL                   [ANY_REAL as real]           total;
+            TruncDint   "_TRUNC_DINT" trunc_to_dint (IN: T) -> LINT                  [ANY_REAL as real]           total;
+            TruncLint   "_TRUNC_LINT" trunc_to_lint (IN: T) -> LINT                  [ANY_REAL as real]           total;
+            TruncUlint  "_TRUNC_ULINT" trunc_to_ulint (IN: T) -> LINT                [ANY_REAL as real]           total;
+            OfBcdOrZero "_OF_BCD"  from_bcd_or_zero (IN: T) -> T                     [ANY_INT as long]            total;
+            BcdOf       "_BCD_OF"  bcd_of     (IN: T) -> T                           [ANY_INT as long]            total;
             SecondsOf   "_SECONDS_OF" seconds_of (IN: T) -> LREAL                    [ANY_INT as long]            total;
             And         "AND"      and        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Or          "OR"       or         (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
@@ -160,6 +170,9 @@ macro_rules! for_each_text_op {
             CompareStart "_COMPARE_START" compare_start (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
             FindOrEnd    "_FIND_OR_END" find_or_end (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
             ReplaceUpTo  "_REPLACE_UP_TO" replace_up_to (IN1: ANY_STRING, IN2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            MidOrLength  "_MID_OR_LENGTH" mid_or_length (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            InsertFrom   "_INSERT_FROM" insert_from (IN1: ANY_STRING, IN2: ANY_STRING, P: ANY_INT) -> ANY_STRING [each];
+            DeleteFrom   "_DELETE_FROM" delete_from (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
             FromBits     "_FROM_BITS"  from_bits  (IN: ULINT) -> STRING [one];
             FromGeneral  "_FROM_GENERAL" from_general (IN: LREAL) -> STRING [one];
             FromSeconds  "_FROM_SECONDS" from_seconds (IN: LINT, KIND: LINT) -> STRING [one];

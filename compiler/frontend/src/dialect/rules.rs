@@ -30,6 +30,7 @@ pub struct Rules {
     pub modulo_of_reals: Followed<ModuloOfReals>,
     pub rotated_constant: Followed<RotatedConstant>,
     pub functions: Followed<Functions>,
+    pub literals: Followed<Literals>,
 }
 
 impl Rules {
@@ -108,8 +109,18 @@ impl Rules {
         matches!(self.real_to_integer.choice, RealToInteger::LowBitsOfLint)
     }
 
+    /// A half is rounded away from zero, and a processor's conversion follows.
+    pub const fn rounds_by_c(&self) -> bool {
+        matches!(self.real_to_integer.choice, RealToInteger::RoundedByC)
+    }
+
     pub const fn keeps_sign(&self) -> bool {
         matches!(self.shr_of_signed.choice, ShrOfSigned::Sign)
+    }
+
+    /// A number without a type is a double, an int or a long, as in C.
+    pub const fn has_literals_of_c(&self) -> bool {
+        matches!(self.literals.choice, Literals::OfC)
     }
 
     pub const fn writes_plus(&self) -> bool {
@@ -180,16 +191,20 @@ pub enum RealToInteger {
     Saturates,
     LowBits,
     LowBitsOfLint,
+    RoundedByC,
 }
 
 impl Choice for RealToInteger {
-    const RULE: &'static str = "REAL to integer, out of range";
+    const RULE: &'static str = "REAL to integer";
 
     fn words(self) -> &'static str {
         match self {
             Self::Saturates => "the nearest value of the type",
             Self::LowBits => "the low bits of the whole number",
             Self::LowBitsOfLint => "the low bits of a LINT; 0 for an unsigned type and a negative value",
+            Self::RoundedByC => {
+                "C's `round`, so halves away from 0; the low bits of 32, or of 64 for longer types and UDINT"
+            }
         }
     }
 }
@@ -501,6 +516,24 @@ impl Choice for Functions {
     }
 }
 
+/// What a number is that has no type's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Literals {
+    OfTheirPlace,
+    OfC,
+}
+
+impl Choice for Literals {
+    const RULE: &'static str = "a number without a type";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::OfTheirPlace => "of its place's type",
+            Self::OfC => "C's `double`, `int` or `long`",
+        }
+    }
+}
+
 const IEC: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::AtTheirType, "IEC 61131-3, 6.6.2.5.4: a result has its operands' type"),
     mixed_numbers: follows(MixedNumbers::HoldsBoth, "IEC 61131-3, figure 11"),
@@ -523,6 +556,7 @@ const IEC: Rules = Rules {
     modulo_of_reals: follows(ModuloOfReals::Refused, "IEC 61131-3, table 29: of ANY_INT"),
     rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page says it"),
     functions: follows(Functions::OfTheStandard, "IEC 61131-3, 6.6.2.5"),
+    literals: follows(Literals::OfTheirPlace, "IEC 61131-3, 6.3.3; REAL and LREAL are left to the implementer"),
 };
 
 /// The choice of another dialect, where no page of the vendor says anything.
@@ -552,6 +586,7 @@ const CSCAPE: Rules = Rules {
     modulo_of_reals: undocumented(IEC.modulo_of_reals),
     rotated_constant: undocumented(IEC.rotated_constant),
     functions: undocumented(IEC.functions),
+    literals: undocumented(IEC.literals),
 };
 
 const CODESYS: Rules = Rules {
@@ -588,6 +623,7 @@ const OPENPLC: Rules = Rules {
     limit_crossed: follows(LimitCrossed::Minimum, MATIEC),
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),
+    literals: follows(Literals::OfC, MATIEC),
     ..IEC
 };
 
@@ -599,7 +635,7 @@ const OPENPLC4: Rules = Rules {
         NarrowIntegers::AtTheirType,
         "STruC++ 0.6.1, run: INT 30000 + 10000 into a DINT is -25536",
     ),
-    real_to_integer: follows(RealToInteger::LowBits, "STruC++ 0.6.1, run: REAL_TO_INT(40000.0) is -25536"),
+    real_to_integer: follows(RealToInteger::RoundedByC, "STruC++ 0.6.1, run: REAL_TO_INT(40000.0) is -25536"),
     halves: follows(Halves::AwayFromZero, "STruC++ 0.6.1, run: REAL_TO_INT(2.5) is 3"),
     integer_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: INT_TO_BOOL(256) is TRUE"),
     bits_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: BYTE_TO_BOOL(16#02) is TRUE"),
@@ -690,6 +726,7 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.modulo_of_reals),
         row(|it| &it.rotated_constant),
         row(|it| &it.functions),
+        row(|it| &it.literals),
     ]
 }
 
@@ -745,8 +782,78 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         evidence: "CODESYS help, \"MOD\"; Beckhoff, \"MOD\", has only: the integer remainder",
         uses: Use::Operator("MOD", Class::Signed),
     },
+    of_matiec(Use::Type(Elementary::Time), PARTS),
+    of_matiec(Use::Type(Elementary::Dt), PARTS),
+    of_matiec(Use::Type(Elementary::Tod), "it may be negative, or longer than a day: `TOD#00:00:00 - T#1s`"),
+    of_matiec(Use::Type(Elementary::Date), "it may have a time of day: `DINT_TO_DATE(1)`"),
+    of_matiec(Use::Function("DELETE"), BEFORE),
+    of_matiec(Use::Function("REPLACE"), BEFORE),
+    of_matiec(Use::Function("SIN"), LAST_DIGIT),
+    of_matiec(Use::Function("COS"), LAST_DIGIT),
+    of_matiec(Use::Function("TAN"), LAST_DIGIT),
+    of_matiec(Use::Function("ASIN"), LAST_DIGIT),
+    of_matiec(Use::Function("ACOS"), LAST_DIGIT),
+    of_matiec(Use::Function("ATAN"), LAST_DIGIT),
+    of_matiec(Use::Function("EXP"), LAST_DIGIT),
+    of_matiec(Use::Function("LN"), LAST_DIGIT),
+    of_matiec(Use::Function("LOG"), LAST_DIGIT),
+    of_matiec(Use::Operator("**", Class::Num), LAST_DIGIT),
+    of_strucpp(Use::Function("LIMIT"), "MN where IN is less than it, also where MN is above MX: `LIMIT(7, 1, 1)` is 7"),
+    of_strucpp(Use::Function("MUX"), "the last input, where K is below 0 or past the inputs"),
+    of_strucpp(Use::Function("SIN"), IN_DOUBLE),
+    of_strucpp(Use::Function("COS"), IN_DOUBLE),
+    of_strucpp(Use::Function("TAN"), IN_DOUBLE),
+    of_strucpp(Use::Function("ASIN"), IN_DOUBLE),
+    of_strucpp(Use::Function("ACOS"), IN_DOUBLE),
+    of_strucpp(Use::Function("ATAN"), IN_DOUBLE),
+    of_strucpp(Use::Function("EXP"), IN_DOUBLE),
+    of_strucpp(Use::Function("LN"), IN_DOUBLE),
+    of_strucpp(Use::Function("LOG"), IN_DOUBLE),
+    of_strucpp(Use::Function("SQRT"), IN_DOUBLE),
+    of_strucpp(Use::Operator("**", Class::Num), IN_DOUBLE),
+    of_strucpp(Use::Literal(Class::Real), "a `double` of C++: `x * 0.1` is computed as an LREAL"),
+    of_strucpp(Use::Literal(Class::Int), "an `int` of C++: `SINT#127 + 1 > 100` is TRUE"),
+    of_strucpp(Use::Operator("NEG", Class::Signed), "computed in 32 bits: `-SINT#-128` is 128 until it is stored"),
+    of_strucpp(Use::Function("MAX"), "`a > b`, else b: so MAX(NaN, 1.0) is 1.0"),
+    of_strucpp(Use::Function("MIN"), "`a < b`, else b: so MIN(1.0, NaN) is NaN"),
+    of_strucpp(Use::Function("LEFT"), "a negative L is all of the text"),
+    of_strucpp(Use::Function("RIGHT"), "a negative L is all of the text"),
+    of_strucpp(Use::Function("MID"), "nothing where P is below 1"),
+    of_strucpp(Use::Function("INSERT"), "before the character at P: `INSERT('ABC', 'X', 1)` is 'XABC'"),
+    of_strucpp(Use::Function("DELETE"), "all of the text where P is below 1 or past its end"),
+    of_strucpp(Use::Function("REPLACE"), "all of the text where P is below 1 or past its end"),
+    of_strucpp(Use::Conversion(Class::Real, Class::Duration), "the fraction of a millisecond is cut"),
+    of_strucpp(
+        Use::Conversion(Class::Real, Class::Bit),
+        "rounded before it is compared with 0: REAL_TO_BOOL(0.4) is FALSE",
+    ),
+    of_strucpp(Use::Conversion(Class::String, Class::Elementary), TEXTS),
+    of_strucpp(Use::Conversion(Class::Elementary, Class::String), TEXTS),
+    of_strucpp(Use::Conversion(Class::Elementary, Class::Date), DATES),
+    of_strucpp(Use::Conversion(Class::Date, Class::Elementary), DATES),
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
+
+const PARTS: &str = "seconds and nanoseconds are kept apart: `T#500ms + T#500ms = T#1s` is FALSE, and a literal may lack a \
+                     nanosecond: `T#1ms` is 999999 ns on x86-64";
+
+const BEFORE: &str = "the process ends where P is 0";
+
+const LAST_DIGIT: &str = "the C library's: the last digit of an LREAL may be another";
+
+const IN_DOUBLE: &str = "computed as an LREAL, by the C library: the last digit may be another";
+
+const TEXTS: &str = "as C++ writes and reads it: REAL_TO_STRING(-1.0E20) is '-1e+20', STRING_TO_INT('8#17') is 8";
+
+const DATES: &str = "a DATE counts days, a TOD or DT nanoseconds or milliseconds: DATE_TO_DINT(D#1999-03-01) is 10651";
+
+const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
+    NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses }
+}
+
+const fn of_strucpp(uses: Use, what: &'static str) -> NotFollowed {
+    NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses }
+}
 
 const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
 

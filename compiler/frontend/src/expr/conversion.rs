@@ -89,6 +89,11 @@ impl<'s> Checker<'_, 's> {
                 let lint = self.apply(op, value.ty, vec![value], Type::LINT, span)?;
                 Some(self.convert(Conversion::Value, target, lint))
             }
+            (None, None) if from.is_real() && !to.is_real() && rules.rounds_by_c() => {
+                let whole = self.apply(Op::AwayFromZero, value.ty, vec![value], Type::LREAL, span)?;
+                let lint = self.apply(truncated_by(to), Type::LREAL, vec![whole], Type::LINT, span)?;
+                Some(self.convert(Conversion::Value, target, lint))
+            }
             (None, None) => self.number_as(value, to, span),
             (Some(_), None) if rules.time_is_seconds() => self.seconds(value, to, span),
             (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
@@ -218,6 +223,12 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let wide = self.convert(Conversion::Value, Type::LINT, value);
+        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let op = match op {
+            Op::ToBcd if matiec => Op::BcdOf,
+            Op::FromBcd if matiec => Op::OfBcdOrZero,
+            op => op,
+        };
         let made = self.apply(op, Type::LINT, vec![wide], Type::LINT, span)?;
         Some(self.convert(Conversion::Value, Type::Elementary(to), made))
     }
@@ -254,6 +265,11 @@ impl<'s> Checker<'_, 's> {
         }
         self.note_conversion(from, Type::Elementary(to), name.span);
         let low_bits = self.decl.dialect(name.span).rules().keeps_low_bits();
+        let rules = self.decl.dialect(name.span).rules();
+        if how == Rounding::ToZero && (rules.has_functions_of_matiec() || rules.rounds_by_c()) {
+            let lint = self.apply(truncated_by(to), from, vec![value], Type::LINT, name.span)?;
+            return Some(self.convert(Conversion::Value, Type::Elementary(to), lint));
+        }
         let op = match how {
             Rounding::ToZero if low_bits => {
                 let whole = self.apply(Op::BitsOfWhole, from, vec![value], Type::LINT, span)?;
@@ -266,6 +282,15 @@ impl<'s> Checker<'_, 's> {
         };
         let whole = self.apply(op, from, vec![value], from, span)?;
         self.number_as(whole, to, span)
+    }
+}
+
+/// By which conversion x86-64 cuts a real to a type.
+fn truncated_by(to: Elementary) -> Op {
+    match (to.repr().size(), to.repr().is_unsigned()) {
+        (8, true) => Op::TruncUlint,
+        (8, false) | (4, true) => Op::TruncLint,
+        _ => Op::TruncDint,
     }
 }
 

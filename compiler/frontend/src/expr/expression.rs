@@ -15,9 +15,7 @@ impl<'s> Checker<'_, 's> {
     /// enumerators and overloaded functions listen to it.
     pub(crate) fn operand(&mut self, expr: &ast::Expr<'s>, expected: Option<Type>) -> Option<Operand> {
         let operand = match &expr.kind {
-            Ast::Literal(literal) => {
-                self.literal(literal, expected, expr.span).inspect(|it| self.note_literal(it, expr.span))
-            }
+            Ast::Literal(literal) => self.literal(literal, expected, expr.span),
             Ast::Paren(inner) => self.operand(inner, expected),
             Ast::Name(name) => self.name(*name, expected).map(Operand::Typed),
             Ast::Member(..) | Ast::Index(..) if self.is_part_of_constant(expr) => {
@@ -206,7 +204,7 @@ impl<'s> Checker<'_, 's> {
         let operand = self.operand(inner, expected)?;
         match op {
             UnaryOp::Plus => {}
-            UnaryOp::Neg => self.note_operator("-", &[&operand], span),
+            UnaryOp::Neg => self.note_operator("NEG", &[&operand], span),
             UnaryOp::Not => self.note_operator("NOT", &[&operand], span),
         }
         match (op, operand) {

@@ -314,7 +314,9 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Option<Operand>> {
         if let (Operand::Integer(a), Operand::Integer(b)) = (a, b) {
-            return self.fold_integers(op, *a, *b, span);
+            let folded = self.fold_integers(op, *a, *b, span);
+            let as_c = self.decl.dialect(span).rules().has_literals_of_c();
+            return if as_c { folded.map(|it| self.wrapped_as_c(it, [*a, *b], span)) } else { folded };
         }
         let op = match op {
             ast::BinaryOp::Add => Op::Add,
@@ -324,6 +326,28 @@ impl<'s> Checker<'_, 's> {
             _ => return None,
         };
         Some(Some(Operand::Real { number: Real::Apply(op, vec![number(a)?, number(b)?]) }))
+    }
+
+    /// An integer without a type is an `int` in C, or a `long` where an `int` does not hold it; of both sides the longer
+    /// one counts. One with a base may be an `unsigned` as well.
+    fn wrapped_as_c(&self, folded: Option<Operand>, sides: [i128; 2], span: Span) -> Option<Operand> {
+        let Some(Operand::Integer(value)) = folded else { return folded };
+        let low = |bits: u32| {
+            let low = value & ((1 << bits) - 1);
+            if low >> (bits - 1) == 0 { low } else { low - (1 << bits) }
+        };
+        let has_base = self.decl.log.sources.text(span).contains('#');
+        let [int, unsigned, long] = [
+            sides.iter().all(|it| it.unsigned_abs() < 1 << 31),
+            has_base && sides.iter().all(|it| u32::try_from(*it).is_ok()),
+            sides.iter().all(|it| i64::try_from(*it).is_ok()),
+        ];
+        Some(Operand::Integer(match (int, unsigned, long) {
+            (true, _, _) => low(32),
+            (false, true, _) => value & 0xFFFF_FFFF,
+            (false, false, true) => low(64),
+            (false, false, false) => value,
+        }))
     }
 
     fn fold_integers(&mut self, op: ast::BinaryOp, a: i128, b: i128, span: Span) -> Option<Option<Operand>> {

@@ -67,6 +67,7 @@ mod system_use;
 pub(crate) mod test_words;
 mod text_conversion;
 mod typed_function;
+mod undefined_shift;
 pub(crate) mod unresolved;
 pub(crate) mod uses;
 mod variadic;

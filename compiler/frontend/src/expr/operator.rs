@@ -52,6 +52,7 @@ impl<'s> Checker<'_, 's> {
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
         self.note_operator(sides.op.text(), &[&sides.a, &sides.b], sides.op_span);
+        self.note_literals([&sides.a, &sides.b], sides.op_span);
         if sides.a.is_reference() || sides.b.is_reference() {
             return self.reference_operation(sides);
         }
@@ -86,7 +87,7 @@ impl<'s> Checker<'_, 's> {
             }
             BinaryOp::Power => {
                 let sides = self.counted(sides);
-                self.power(sides).map(Operand::Typed)
+                self.power(sides)
             }
             BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => {
                 let sides = self.counted(sides);
@@ -322,7 +323,7 @@ impl<'s> Checker<'_, 's> {
 
     /// `**`: a REAL or LREAL base gives its own type, whatever the exponent is. A REAL to the power of what REAL does not
     /// hold exactly goes through LREAL. Integers as a base are converted.
-    fn power(&mut self, sides: Sides) -> Option<Expr> {
+    fn power(&mut self, sides: Sides) -> Option<Operand> {
         const REAL: Type = Type::Elementary(Elementary::Real);
         let op_span = sides.op_span;
         let mixes = self.decl.dialect(sides.span).mixes_bits_and_integers();
@@ -356,7 +357,10 @@ impl<'s> Checker<'_, 's> {
         let b = self.side(sides.b, computed, sides.right)?;
         let computed = Type::Elementary(computed);
         let power = self.apply(Op::Expt, computed, vec![a, b], computed, op_span)?;
-        Some(self.convert(Conversion::Value, ty, power))
+        if as_c {
+            return Some(super::operand::computed(power, ty));
+        }
+        Some(Operand::Typed(self.convert(Conversion::Value, ty, power)))
     }
 
     fn arithmetic(&mut self, sides: Sides) -> Option<Operand> {
@@ -425,6 +429,12 @@ impl<'s> Checker<'_, 's> {
         if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
             let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
             self.refuse_time_overflow(sum.is_none(), span)?;
+        }
+        if self.decl.dialect(span).rules().time_is_seconds() {
+            let op = if op == Op::Add { Op::TimePlus } else { Op::TimeMinus };
+            let [a, b] = [a, b].map(|it| self.convert(Conversion::Same, Type::LINT, it));
+            let sum = self.apply(op, Type::LINT, vec![a, b], Type::LINT, op_span)?;
+            return Some(self.convert(Conversion::Same, ty, sum));
         }
         self.apply(op, ty, vec![a, b], ty, op_span)
     }
@@ -600,6 +610,9 @@ fn promoted(sides: &Sides, own: Elementary, as_c: bool, ranks: bool) -> Elementa
         || as_c && is_junction(sides.op);
     // A promoted value may be negative: it is compared with a UDINT by what it is. C and Logix make a UDINT of it.
     let compared = compares(sides.op) && as_number(own) == Elementary::Udint && !as_c && !ranks;
+    if as_c && own == Elementary::Real && [&sides.a, &sides.b].into_iter().any(is_double) {
+        return Elementary::Lreal;
+    }
     if !is_narrow(own) && !compared {
         return own;
     }
@@ -607,6 +620,11 @@ fn promoted(sides: &Sides, own: Elementary, as_c: bool, ranks: bool) -> Elementa
         Some(ty) if calculates && is_narrow(ty) => Elementary::Dint,
         ty => ty.unwrap_or(own),
     }
+}
+
+/// A REAL that is a double in C: it has no type, or was computed with one that has none.
+fn is_double(side: &Operand) -> bool {
+    matches!(side, Operand::Real { .. }) || side.computed_at() == Some(Type::LREAL)
 }
 
 /// The type at which a literal meets a typed operand: the operand's, if the literal fits it.

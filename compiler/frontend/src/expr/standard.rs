@@ -164,6 +164,8 @@ impl<'s> Checker<'_, 's> {
         let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
         let value = match (op, ty) {
             (Op::Limit, Type::Elementary(_)) => self.limited(ty, operands, span),
+            (Op::Limit, Type::String(_)) if matiec => self.limited_text_low(ty, operands, span),
+            (Op::Abs, _) if matiec => self.apply(Op::AbsIfBelow, ty, operands, ty, span),
             (_, Type::Elementary(Elementary::Real)) if matiec && is_of_math(op) => {
                 let operands =
                     operands.into_iter().map(|it| self.convert(Conversion::Value, Type::LREAL, it)).collect();
@@ -218,6 +220,7 @@ impl<'s> Checker<'_, 's> {
         if ty == Type::BOOL {
             return self.shift_one_bit(op, value, count, span);
         }
+        self.undefined_shift(op, ty, &count, span);
         let count = match op {
             // The low bits of a count turn as far as all of it: every width divides 2^64.
             Op::Rol | Op::Ror => self.convert(Conversion::Value, Type::LINT, count),
@@ -329,12 +332,8 @@ impl<'s> Checker<'_, 's> {
         };
         let mut arms: Vec<_> = (0..).zip(inputs).map(arm).collect();
         let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
-        let zero =
-            self.decl.program.repr(ty).filter(|_| matiec).map(|it| Expr::new(ty, ExprKind::Const(it.zero()), at));
-        let text = matiec && matches!(ty, Type::String(_));
-        let mut outside = match zero {
-            Some(zero) => vec![Statement::assign(result.clone(), zero, at)],
-            None if text => vec![Statement::assign(result.clone(), empty_text(ty, at), at)],
+        let mut outside = match self.nothing_of(ty, span).filter(|_| matiec) {
+            Some(nothing) => vec![Statement::assign(result.clone(), nothing, at)],
             None => vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)],
         };
         if chooses {
@@ -350,6 +349,15 @@ impl<'s> Checker<'_, 's> {
         Some(computed(Expr::load(result, at), own))
     }
 
+    /// 0, FALSE or the empty text: what MATIEC's MUX gives past its inputs.
+    fn nothing_of(&mut self, ty: Type, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        match ty {
+            Type::String(_) => Some(empty_text(ty, at)),
+            _ => Some(Expr::new(ty, ExprKind::Const(self.decl.program.repr(ty)?.zero()), at)),
+        }
+    }
+
     /// MUX of constants, with the same inputs for a K beyond them.
     fn constant_mux(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
         let mut inputs = operands.into_iter();
@@ -360,6 +368,10 @@ impl<'s> Checker<'_, 's> {
             _ if is_beyond && self.decl.dialect(span).chooses_inputs() => inputs.next_back(),
             Ok(number) => inputs.nth(number),
             Err(_) => None,
+        };
+        let chosen = match chosen {
+            None if self.decl.dialect(span).rules().has_functions_of_matiec() => self.nothing_of(ty, span),
+            chosen => chosen,
         };
         if chosen.is_none() {
             let fault = FaultKind::IndexOutOfRange;
@@ -375,18 +387,14 @@ impl<'s> Checker<'_, 's> {
         if op == TextOp::Concat {
             return self.concat(operands, span);
         }
-        let op = match op {
-            TextOp::Find if self.decl.dialect(span).rules().has_functions_of_matiec() => TextOp::FindOrEnd,
-            TextOp::Replace if self.decl.dialect(span).rules().has_functions_of_matiec() => TextOp::ReplaceUpTo,
-            _ => op,
-        };
+        let op = if self.decl.dialect(span).rules().has_functions_of_matiec() { in_matiec(op) } else { op };
         let mut ready = Vec::new();
         for (operand, repr) in operands.into_iter().zip(op.operands()) {
             ready.push(if repr.is_some() { self.count(operand)? } else { operand });
         }
         let ty = match op.result() {
             Some(_) => Type::INT,
-            None => Type::String(made_by(op, &ready)?),
+            None => Type::String(made_by(op, &ready, self.longest(span))?),
         };
         let at = self.at(span);
         let range =
@@ -398,12 +406,18 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// So many units has the result of a text function at most: in OpenPLC, as many as a STRING.
+    fn longest(&self, span: Span) -> u16 {
+        let rules = self.decl.dialect(span).rules();
+        if rules.has_functions_of_matiec() { rules.default_string.choice.capacity() } else { MAX_CAPACITY }
+    }
+
     fn concat(&mut self, operands: Vec<Expr>, span: Span) -> Option<Expr> {
         let at = self.at(span);
         let mut operands = operands.into_iter();
         let mut result = operands.next()?;
         for operand in operands {
-            let ty = Type::String(joined(result.ty.string_type()?, operand.ty.string_type()?));
+            let ty = Type::String(joined(result.ty.string_type()?, operand.ty.string_type()?, self.longest(span)));
             let joined = Expr::new(ty, ExprKind::ApplyText(TextOp::Concat, vec![result, operand]), at);
             let joined = self.evaluated(joined, span)?;
             result = self.shallow(joined);
@@ -436,6 +450,18 @@ fn positions(op: TextOp, operands: &[Expr]) -> Option<Vec<(Expr, i64)>> {
     }
 }
 
+/// The function of MATIEC's library in the place of the standard's, where they differ.
+fn in_matiec(op: TextOp) -> TextOp {
+    const OTHERS: [(TextOp, TextOp); 5] = [
+        (TextOp::Find, TextOp::FindOrEnd),
+        (TextOp::Mid, TextOp::MidOrLength),
+        (TextOp::Insert, TextOp::InsertFrom),
+        (TextOp::Delete, TextOp::DeleteFrom),
+        (TextOp::Replace, TextOp::ReplaceUpTo),
+    ];
+    OTHERS.iter().find(|it| it.0 == op).map_or(op, |it| it.1)
+}
+
 fn empty_text(ty: Type, at: Location) -> Expr {
     Expr::convert(Conversion::Value, ty, Expr::new(Type::string(0), ExprKind::Text(Chars::Narrow(Vec::new())), at), at)
 }
@@ -466,15 +492,18 @@ fn text_depth(expr: &Expr) -> usize {
 }
 
 /// What holds both strings, one after the other.
-fn joined(a: StringType, b: StringType) -> StringType {
-    a.of_capacity(a.capacity.saturating_add(b.capacity).min(MAX_CAPACITY))
+fn joined(a: StringType, b: StringType, longest: u16) -> StringType {
+    a.of_capacity(a.capacity.saturating_add(b.capacity).min(longest))
 }
 
 /// What holds the longest result: what is inserted adds to the text.
-fn made_by(op: TextOp, operands: &[Expr]) -> Option<StringType> {
+fn made_by(op: TextOp, operands: &[Expr], longest: u16) -> Option<StringType> {
     let own = operands.first()?.ty.string_type()?;
     Some(match op {
-        TextOp::Insert | TextOp::Replace | TextOp::ReplaceUpTo => joined(own, operands.get(1)?.ty.string_type()?),
+        TextOp::MidOrLength => own.of_capacity(own.capacity.saturating_add(1).min(longest)),
+        TextOp::Insert | TextOp::InsertFrom | TextOp::Replace | TextOp::ReplaceUpTo => {
+            joined(own, operands.get(1)?.ty.string_type()?, longest)
+        }
         _ => own,
     })
 }

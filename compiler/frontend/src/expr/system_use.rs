@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use crate::Span;
+use crate::types::coercion::is_narrow;
 use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Use};
 use staunch_runtime::Class;
 
@@ -18,9 +19,14 @@ impl Checker<'_, '_> {
         }
     }
 
-    pub(super) fn note_literal(&mut self, literal: &Operand, span: Span) {
-        if let (None, Some(class)) = (literal.typed(), class_of(literal)) {
-            self.note_use(Use::Literal(class), span);
+    /// A number without a type that is an operand; an integer, beside one of fewer bits than 32, or another literal.
+    pub(super) fn note_literals(&mut self, sides: [&Operand; 2], span: Span) {
+        let is_wide = |it: &Operand| matches!(it.ty(), Some(Type::Elementary(ty)) if !is_narrow(ty));
+        for (literal, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
+            let counts = !matches!(literal, Operand::Integer(_)) || !is_wide(other);
+            if let (None, Some(class), true) = (literal.typed(), class_of(literal), counts) {
+                self.note_use(Use::Literal(class), span);
+            }
         }
     }
 

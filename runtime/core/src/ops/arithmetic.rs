@@ -62,8 +62,8 @@ pub fn modulo<T: Integer>(a: T, b: T) -> Result<T, FaultKind> {
 /// assert_eq!(div_or_zero(7_i16, 0), 0);
 /// ```
 #[inline]
-pub fn div_or_zero<T: Integer>(a: T, b: T) -> T {
-    a.quotient(b).unwrap_or(T::ZERO)
+pub fn div_or_zero<T: Number>(a: T, b: T) -> T {
+    if b == T::ZERO { T::ZERO } else { a.quotient(b).unwrap_or(T::ZERO) }
 }
 
 /// [`modulo`] of OpenPLC and S7, where the remainder of a division by zero is 0.

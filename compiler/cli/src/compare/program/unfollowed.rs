@@ -61,7 +61,7 @@ END_PROGRAM
         let found = |wanted| used(&program, wanted);
         assert_eq!(found(Use::Function("LEFT")), Some(4));
         assert_eq!(found(Use::Function("RIGHT")), None);
-        assert_eq!(found(Use::Literal(Class::Int)), Some(4));
+        assert_eq!(found(Use::Literal(Class::Int)), Some(5));
         assert_eq!(found(Use::Operator("+", Class::Int)), Some(5));
         assert_eq!(found(Use::Operator("+", Class::Real)), None);
         assert_eq!(found(Use::Literal(Class::Real)), Some(6));
