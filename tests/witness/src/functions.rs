@@ -478,7 +478,7 @@ impl<'a> Machine<'a> {
         let nearest = match self.declared.family {
             Family::Logix => real.round_ties_even(),
             Family::Codesys | Family::Openplc4 => real.round(),
-            Family::Iec | Family::Cscape | Family::Openplc => return in_repr(value, to),
+            Family::Iec | Family::Cscape | Family::Openplc | Family::S7 => return in_repr(value, to),
         };
         if to == Elementary::Bool || to.is_real() { in_repr(value, to) } else { low_bits(nearest, to) }
     }
