@@ -776,12 +776,6 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
         SIEMENS_DATES,
     ),
-    NotFollowed {
-        dialect: Dialect::Codesys,
-        what: "the remainder is not negative, says the page, without an example",
-        evidence: "CODESYS help, \"MOD\"; Beckhoff, \"MOD\", has only: the integer remainder",
-        uses: Use::Operator("MOD", Class::Signed),
-    },
     of_matiec(Use::Type(Elementary::Time), PARTS),
     of_matiec(Use::Type(Elementary::Dt), PARTS),
     of_matiec(Use::Type(Elementary::Tod), "it may be negative, or longer than a day: `TOD#00:00:00 - T#1s`"),
@@ -878,6 +872,12 @@ const fn edge(dialect: Dialect, what: &'static str, here: &'static str, document
 
 /// Where a vendor leaves a value open, or where no page was found: what is done here is a choice.
 pub const EDGES: &[Edge] = &[
+    edge(
+        Dialect::Codesys,
+        "`MOD` of a negative number",
+        "the dividend's sign, as processors divide",
+        "CODESYS help, \"MOD\": \"a non-negative integer\", without an example; Beckhoff, \"MOD\": the integer remainder",
+    ),
     edge(
         Dialect::Codesys,
         "`SHL`, `SHR` by the type's bits or more",
