@@ -389,10 +389,10 @@ impl Runner<'_> {
     /// Says how often the program has divided by zero and continued, and where first.
     fn tell_minor_faults(&self) -> Result<(), Error> {
         if self.options.json {
-            let told = minor_faults_json(self.minor_faults, &self.map);
+            let told = minor_faults_json(self.minor_faults, self.map);
             return told.map_or(Ok(()), |it| self.options.print_json(&it));
         }
-        if let Some(note) = minor_faults_note(self.minor_faults, &self.map).filter(|_| !self.options.quiet) {
+        if let Some(note) = minor_faults_note(self.minor_faults, self.map).filter(|_| !self.options.quiet) {
             crate::error::tell(format_args!("{note}"));
         }
         Ok(())

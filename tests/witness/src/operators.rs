@@ -144,12 +144,16 @@ impl<'a> Machine<'a> {
 
     /// One of the runtime's operations at a type. A comparison gives a BOOL.
     pub(crate) fn applied(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
-        // In Logix an integer that is divided by zero stays what it is. (1756-RM003N, p. 277, 281)
-        if let ("DIV" | "MOD", Family::Logix, [a, b]) = (name, self.declared.family, operands)
+        // In Logix an integer that is divided by zero stays what it is (1756-RM003N, p. 277, 281); S7 gives 0.
+        if let ("DIV" | "MOD", [a, b]) = (name, operands)
             && ty.is_integer()
             && in_repr(*b, Elementary::Lint).as_integer()? == 0
         {
-            return Ok(Value::scalar(ty, *a));
+            match self.declared.family {
+                Family::Logix => return Ok(Value::scalar(ty, *a)),
+                Family::S7 => return Ok(in_repr(Value::scalar(Elementary::Dint, Scalar::I32(0)).as_scalar()?, ty)),
+                Family::Iec | Family::Cscape | Family::Codesys | Family::Openplc | Family::Openplc4 => {}
+            }
         }
         match apply(name, ty.repr(), operands) {
             None => unknown(&format!("{name} of {ty:?}")),
