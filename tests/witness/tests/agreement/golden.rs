@@ -56,9 +56,9 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
-    let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "EN :", "MID(", "DELETE(", "INSERT(", "LIMIT("];
+    let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "MID(", "DELETE(", "INSERT(", "LIMIT("];
     if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
-        return Ok(Verdict::Rejected("a function, the text of a number, or an EN, in SCL".to_owned()));
+        return Ok(Verdict::Rejected("a function, a power, or the text of a number, in SCL".to_owned()));
     }
     let is_computed =
         || ["_TO_", "REAL", "TIME", "TON", "TOF", "TP", "F_TRIG", "F_EDGE", "STRING"].iter().any(|it| has(it));
