@@ -109,7 +109,7 @@ impl Rules {
         matches!(self.real_to_integer.choice, RealToInteger::LowBitsOfLint)
     }
 
-    /// A half is rounded away from zero, and a processor's conversion follows.
+    /// A real is converted as C does on x86-64, after it was rounded.
     pub const fn rounds_by_c(&self) -> bool {
         matches!(self.real_to_integer.choice, RealToInteger::RoundedByC)
     }
@@ -195,16 +195,14 @@ pub enum RealToInteger {
 }
 
 impl Choice for RealToInteger {
-    const RULE: &'static str = "REAL to integer";
+    const RULE: &'static str = "REAL to integer, out of range";
 
     fn words(self) -> &'static str {
         match self {
             Self::Saturates => "the nearest value of the type",
             Self::LowBits => "the low bits of the whole number",
             Self::LowBitsOfLint => "the low bits of a LINT; 0 for an unsigned type and a negative value",
-            Self::RoundedByC => {
-                "C's `round`, so halves away from 0; the low bits of 32, or of 64 for longer types and UDINT"
-            }
+            Self::RoundedByC => "the low bits of 32, or of 64 for longer types and UDINT, as C converts on x86-64",
         }
     }
 }
@@ -213,7 +211,7 @@ impl Choice for RealToInteger {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halves {
     ToEven,
-    /// Only where low bits are kept: no other system is known to round so.
+    /// With `LowBits` and `RoundedByC` alone: no other system is known to round so.
     AwayFromZero,
 }
 
