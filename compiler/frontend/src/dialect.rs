@@ -271,7 +271,8 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// `a [:=] b`: what is assigned so is set to 0 by the prescan (1756-PM007).
+    /// `a [:=] b`: what is assigned so is set to 0 when the controller enters Run mode ("Specify a non-retentive assignment",
+    /// MOTION-RM002H, p. 637; the type STRING is there, too).
     pub const fn resets_assignments(self) -> bool {
         matches!(self, Self::Logix)
     }

@@ -238,7 +238,7 @@ fn note_nonretentive(target: Span, log: &mut Log<'_>) {
     }
     log.report(
         Diagnostic::new(Code::E0321, target, "`[:=]` is the non-retentive assignment of Logix")
-            .label("Logix sets this to 0 as the controller starts to run")
+            .label("Logix sets this to 0 when the controller enters Run mode")
             .help("write `:=`; the variable has its initial value after a start, unless it is RETAIN"),
     );
 }

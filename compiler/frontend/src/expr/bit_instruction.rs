@@ -131,20 +131,25 @@ impl<'s> Checker<'_, 's> {
         let place = self.place(base)?.place;
         let preparation = match part {
             Some(part) => Preparation::Bit { shift: Some(self.find_part(place.ty, part)?.bits().shift), value: false },
-            None if self.decl.program.repr(place.ty).is_some() => Preparation::Zero,
+            None if self.is_set_to_zero(place.ty) => Preparation::Zero,
             None => {
                 let ty = self.type_name(place.ty);
                 let error = Diagnostic::new(
                     Code::E0321,
                     target.span,
-                    format!("`[:=]` assigns a number or a BOOL, this is {ty}"),
+                    format!("`[:=]` assigns a number, a BOOL or a STRING, this is {ty}"),
                 );
-                self.report(error.label("only one value is set to 0").help("write `:=`"));
+                self.report(error.label("the prescan sets one value to 0").help("write `:=`"));
                 return None;
             }
         };
         self.prepared(&place, preparation);
         Some(())
+    }
+
+    /// Whether `[:=]` assigns this: a number, a BOOL or a STRING.
+    fn is_set_to_zero(&self, ty: Type) -> bool {
+        self.decl.program.repr(ty).is_some() || ty.string_type().is_some()
     }
 
     /// What is given for a bit.

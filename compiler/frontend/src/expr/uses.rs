@@ -22,7 +22,7 @@ pub(crate) enum Preparation {
     Instruction(usize),
     /// A BOOL, or a bit of an integer, is given a value.
     Bit { shift: Option<u32>, value: bool },
-    /// A number is set to 0.
+    /// A number is set to 0, a text to an empty one.
     Zero,
 }
 

@@ -87,7 +87,12 @@ fn instances(program: &Program) -> Vec<u64> {
     for it in &program.instances {
         counts[program.class(it.program).state.index()] += 1;
     }
-    let locals = program.routines.iter().flat_map(|it| &it.locals).map(|it| it.ty);
+    with_parts(program, program.routines.iter(), counts)
+}
+
+/// `counts` with the locals of these routines, and with all that the structures contain.
+fn with_parts<'p>(program: &Program, routines: impl Iterator<Item = &'p Routine>, mut counts: Vec<u64>) -> Vec<u64> {
+    let locals = routines.flat_map(|it| &it.locals).map(|it| it.ty);
     locals.for_each(|ty| add(program, ty, 1, &mut counts));
     // A structure is after those that it contains.
     for at in (0..counts.len()).rev() {
@@ -132,7 +137,13 @@ fn bounded(program: &Program, routines: Vec<usize>, counts: &[u64]) -> Option<Gr
     if !circles(&direct).is_empty() {
         return None;
     }
-    let of = |at: &usize| program.routines[*at].state.map_or(0, |it| counts[it.index()]);
+    // Each level has locals of its own: the instances among them are as many as there are levels.
+    let own = with_parts(program, routines.iter().map(|at| &program.routines[*at]), vec![0; counts.len()]);
+    let state = |at: &usize| program.routines[*at].state.map(|it| it.index());
+    if targets.iter().filter_map(state).any(|it| own[it] > 0) {
+        return None;
+    }
+    let of = |at: &usize| state(at).map_or(0, |it| counts[it]);
     // A chain may begin with what no reference leads to.
     let first = u64::from(targets.len() < routines.len());
     let levels = targets.iter().map(of).fold(first, u64::saturating_add).max(1);

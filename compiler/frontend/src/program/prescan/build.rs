@@ -6,8 +6,8 @@ use crate::types::declarations::Declarations;
 use crate::types::signature::pin_place;
 use staunch_ir::startup::{Event, Fate, Startup};
 use staunch_ir::{
-    Block, Const, Elementary, Expr, ExprKind, For, Local, LocalId, Location, Op, Place, Program, Projection, Repr,
-    RoutineId, Statement, StatementKind, Type, Value,
+    Block, Chars, Const, Elementary, Expr, ExprKind, For, Local, LocalId, Location, Op, Place, Program, Projection,
+    Repr, RoutineId, Statement, StatementKind, Type, Value,
 };
 
 /// Builds the prescan of one POU.
@@ -65,8 +65,11 @@ impl<'p> Builder<'p> {
                 Some(StatementKind::PrescanBlock { block: target, instruction })
             }
             Preparation::Zero => {
-                let zero = self.program.repr(target.ty)?.zero();
-                Some(StatementKind::Assign { value: Expr::new(target.ty.read(), ExprKind::Const(zero), at), target })
+                let zero = match target.ty.string_type() {
+                    Some(ty) => ExprKind::Text(Chars::empty(ty)),
+                    None => ExprKind::Const(self.program.repr(target.ty)?.zero()),
+                };
+                Some(StatementKind::Assign { value: Expr::new(target.ty.read(), zero, at), target })
             }
             Preparation::Bit { shift: None, value } => {
                 Some(StatementKind::Assign { target, value: Expr::bool(value, at) })
