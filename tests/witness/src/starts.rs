@@ -4,7 +4,7 @@ use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::storage::{Cell, Place, integer_cell};
 use crate::types::{Slot, Type};
 use staunch_frontend::ast::{Initial, InitialKind};
-use staunch_runtime::{BlockInfo, Family, Value as Scalar};
+use staunch_runtime::{BlockInfo, Family, FaultKind, Value as Scalar};
 
 /// What an initial value gives a variable.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ impl<'a> Machine<'a> {
                 let is_wanted =
                     if let Type::Reference(_) = place.ty { self.assigns.references } else { self.assigns.values };
                 if is_wanted {
-                    let value = self.value_as(frame, expr, &place.ty)?;
+                    let value = self.value_as(frame, expr, &place.ty).map_err(computed)?;
                     self.write(place, &value);
                 } else if let Type::Reference(_) = place.ty {
                     self.start_unset(frame, place)?;
@@ -143,6 +143,16 @@ impl<'a> Machine<'a> {
 
     fn start_slot(&mut self, frame: &Frame<'a>, place: &Place<'a>, slot: &Slot<'a>) -> Outcome<()> {
         self.start(frame, place, slot.initial)
+    }
+}
+
+/// What a reference leads to is read when all variables are there: in which order is not for the witness to say.
+fn computed(stop: Stop) -> Stop {
+    match stop {
+        Stop::Fault(fault) if fault.kind == FaultKind::NullReference => {
+            Stop::Unknown("an initial value behind a reference".to_owned())
+        }
+        stop => stop,
     }
 }
 

@@ -255,6 +255,40 @@ fn a_state_larger_than_the_stack_starts() {
     assert_eq!(ran.out(0), expected);
 }
 
+/// The library has a SCALE_X that takes no two whole numbers without a type; the program's own does.
+#[test]
+fn the_path_of_a_file_does_not_change_what_it_means() {
+    let own = "FUNCTION SCALE_X : REAL VAR_INPUT MIN, VALUE, MAX : REAL; END_VAR
+SCALE_X := MIN + VALUE * (MAX - MIN);
+END_FUNCTION
+PROGRAM Main VAR r : REAL; END_VAR r := SCALE_X(0, 0.5, 100); END_PROGRAM
+";
+    let folder = Folder::with("path", &[("main.st", own)]);
+    std::fs::create_dir_all(folder.0.join("library")).unwrap();
+    folder.write("library/scale_x.st", own);
+    for path in ["main.st", "library/scale_x.st"] {
+        let shown = folder.staunch(&format!("run {path} --dialect siemens --scans 1 --trace -")).out(0);
+        assert_eq!(shown, "scan,time_ms,r\n1,0,50.0\n", "{path}");
+    }
+}
+
+/// A CONFIGURATION says which programs run, whatever it calls them.
+#[test]
+fn a_configuration_may_name_programs_as_they_are() {
+    let programs = "PROGRAM A VAR x : INT; END_VAR x := x + 1; END_PROGRAM
+PROGRAM B VAR y : INT; END_VAR y := y + 2; END_PROGRAM
+";
+    let configuration =
+        "CONFIGURATION C RESOURCE R ON PLC PROGRAM A : A; PROGRAM B : B; END_RESOURCE END_CONFIGURATION\n";
+    let configured = format!("{programs}{configuration}");
+    let folder = Folder::with("configured", &[("plain.st", programs), ("configured.st", &configured)]);
+    let expected = "scan,time_ms,A.x,B.y\n1,0,1,2\n2,10,2,4\n";
+    assert_eq!(folder.staunch("run configured.st --scans 2 --trace -").out(0), expected);
+    has(&folder.staunch("compare configured.st --from iec --to siemens").out(0), &["are equal"]);
+    let which = "the sources hold several programs; choose one with --program: there are A, B";
+    has(&folder.staunch("run plain.st --scans 2").err(2), &[which]);
+}
+
 #[test]
 fn every_error_of_every_command_is_an_object_on_request() {
     let folder = Folder::with("errors", &[("main.st", COUNTER), ("bad.csv", "scan,nothing\n1,1\n")]);

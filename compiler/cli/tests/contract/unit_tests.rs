@@ -258,14 +258,21 @@ END_PROGRAM
 
 #[test]
 fn recursion_of_a_test_is_not_the_programs() {
-    let tests = "TEST 'two steps'
-VAR one, two : Step; last : Last; END_VAR
-    two.next := last;
-    one.next := two;
-    ASSERT_EQ(one.Go(), 1);
+    let tests = |steps: u32| {
+        format!(
+            "TEST 'two steps'
+VAR steps : ARRAY[1..{steps}] OF Step; last : Last; END_VAR
+    steps[2].next := last;
+    steps[1].next := steps[2];
+    ASSERT_EQ(steps[1].Go(), 1);
 END_TEST
-";
-    let folder = Folder::with("tests_recursion", &[("chain.st", CHAIN), ("chain_test.st", tests)]);
+"
+        )
+    };
+    // A chain of few instances has an end.
+    let folder = Folder::with("tests_chain", &[("chain.st", CHAIN), ("chain_test.st", &tests(2))]);
+    has(&folder.staunch("test . --backend interpret").out(0), &["1 passed, 0 failed"]);
+    let folder = Folder::with("tests_recursion", &[("chain.st", CHAIN), ("chain_test.st", &tests(501))]);
     folder.staunch("run . --scans 1 --backend interpret").out(0);
     has(&folder.staunch("test . --backend interpret").err(1), &["error[E0310]: `Step.Go` calls itself"]);
     has(&folder.staunch("check .").err(1), &["error[E0310]: `Step.Go` calls itself"]);
