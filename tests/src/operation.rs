@@ -112,6 +112,7 @@ pub fn program(tasks: &[Task]) -> Program {
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
         uses: staunch_ir::Uses::default(),
+        is_configured: false,
         structs,
         classes: tasks
             .iter()

@@ -11,6 +11,7 @@ mod constants;
 mod effects;
 mod facts;
 mod operations;
+mod own_names;
 mod pointers;
 mod programs;
 mod rows;

@@ -311,7 +311,7 @@ impl Session {
             None if program.instances.is_empty() => {
                 return Err("there is nothing to run: the sources hold no PROGRAM".to_owned());
             }
-            None if program.instances.len() > 1 && !self.configured(&program) => {
+            None if program.instances.len() > 1 && !program.is_configured => {
                 return Err(format!(
                     "the sources hold several programs; choose one with --program: there {}",
                     are(&names)
@@ -320,13 +320,6 @@ impl Session {
             None => {}
         }
         Ok(program)
-    }
-
-    /// Whether a CONFIGURATION says which instances run: then they bear names of their own, or
-    /// the source has a TASK.
-    pub fn configured(&self, program: &Program) -> bool {
-        let plain = |it: &staunch_ir::Instance| it.interval.is_none() && it.name == program.class(it.program).name;
-        !program.instances.iter().all(plain)
     }
 
     /// A line for people on standard error, as cargo prints them.

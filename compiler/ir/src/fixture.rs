@@ -67,6 +67,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
         uses: Uses::default(),
+        is_configured: false,
         structs,
         instances: vec![Instance {
             name: "main".to_owned(),

@@ -56,6 +56,8 @@ pub struct Program {
     pub routines: Vec<Routine>,
     /// The programs that run, in order.
     pub instances: Vec<Instance>,
+    /// A CONFIGURATION says which these are.
+    pub is_configured: bool,
 }
 
 /// A variable into which what lies at an input's address is copied before each scan.

@@ -116,6 +116,7 @@ impl Maker {
             reach: Reach::default(),
             places: std::collections::BTreeSet::new(),
             uses: Default::default(),
+            is_configured: false,
             structs: maker.structs,
             classes: maker.classes,
             routines: maker.routines,

@@ -47,7 +47,7 @@ pub fn tables(session: &Session) -> Result<Vec<Table>, String> {
 fn subject(session: &Session, program: &Program, table: &Table) -> Result<Program, String> {
     let is_own = |it: &staunch_ir::Instance| program.class(it.program).location.file == table.file;
     if !program.instances.iter().any(is_own) {
-        let is_known = session.project.program.is_some() || program.instances.len() < 2 || session.configured(program);
+        let is_known = session.project.program.is_some() || program.instances.len() < 2 || program.is_configured;
         if !is_known {
             let names: Vec<_> = program.instances.iter().map(|it| format!("`{}`", it.name)).collect();
             let which = "no CONFIGURATION says which PROGRAMs run, and none is in the source that the table is beside";
@@ -59,7 +59,7 @@ fn subject(session: &Session, program: &Program, table: &Table) -> Result<Progra
     let classes: Vec<_> = program.classes.iter().map(|it| it.location.file).collect();
     program.instances.retain(|it| classes[it.program.index()] == table.file);
     // Of several that no CONFIGURATION runs, `run` asks which one is meant.
-    if !session.configured(&program) {
+    if !program.is_configured {
         program.instances.iter_mut().for_each(|it| it.priority = 0);
     }
     Ok(program)

@@ -758,7 +758,13 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         Dialect::Codesys,
         Elementary::Time,
         "32 bits of milliseconds without a sign: less than `T#0s` or more than `T#49d17h2m47s295ms` wraps",
-        "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"",
+        CODESYS_TIMES,
+    ),
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Ltime,
+        "64 bits of nanoseconds without a sign: less than `LTIME#0ns` wraps, and it reaches to twice what it reaches to here",
+        CODESYS_TIMES,
     ),
     not_followed(Dialect::Codesys, Elementary::Date, "32 bits of seconds since 1970: it ends in 2106", CODESYS_DATES),
     not_followed(
@@ -847,6 +853,7 @@ const fn of_strucpp(uses: Use, what: &'static str) -> NotFollowed {
     NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses }
 }
 
+const CODESYS_TIMES: &str = "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"";
 const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
 
 const SIEMENS_DATES: &str = "S7-1200 manual V4.2, table 5-32";

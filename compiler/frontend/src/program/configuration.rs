@@ -40,7 +40,8 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     if declarations.log.options.tests {
         return declarations.test_instances();
     }
-    if !declarations.program.instances.is_empty() {
+    declarations.program.is_configured = !declarations.program.instances.is_empty();
+    if declarations.program.is_configured {
         return;
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;

@@ -687,6 +687,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         reach: staunch_ir::Reach::default(),
         places: std::collections::BTreeSet::new(),
         uses: staunch_ir::Uses::default(),
+        is_configured: false,
         instances: Vec::new(),
     }
 }

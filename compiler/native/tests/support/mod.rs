@@ -93,6 +93,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
         uses: Default::default(),
+        is_configured: false,
         instances: (0..classes.len()).map(|at| instance(ClassId::next(at))).collect(),
         classes,
         structs,
