@@ -12,7 +12,7 @@ use crate::types::address::is_input;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Instance, Section, Type, Value};
+use staunch_ir::{Class, Instance, Section, Type, Value};
 
 pub(super) const LOWEST_PRIORITY: u32 = 65535;
 
@@ -42,7 +42,7 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     }
     declarations.program.is_configured = !declarations.program.instances.is_empty();
     if declarations.program.is_configured {
-        return;
+        return mark_listed(&mut declarations.program.instances, &declarations.program.classes);
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
     let is_shared =
@@ -63,6 +63,18 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
             interval: None,
             priority: LOWEST_PRIORITY,
         });
+    }
+}
+
+/// What runs a program that is compiled takes several instances of the lowest priority and of their PROGRAMs' names for
+/// ones that no CONFIGURATION lists.
+fn mark_listed(instances: &mut [Instance], classes: &[Class]) {
+    let is_plain = |it: &Instance| {
+        let is_named = it.name == classes[it.program.index()].name;
+        is_named && it.interval.is_none() && it.priority == LOWEST_PRIORITY
+    };
+    if instances.len() > 1 && instances.iter().all(is_plain) {
+        instances.iter_mut().for_each(|it| it.priority = LOWEST_PRIORITY - 1);
     }
 }
 
