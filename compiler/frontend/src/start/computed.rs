@@ -84,7 +84,7 @@ impl<'s> Computed<'s> {
             it.declare(item);
         }
         // What asks for a variable that is computed is, too.
-        while computing().flat_map(|it| &it.items).fold(false, |more, item| it.find(item) || more) {}
+        while computing().flat_map(|file| &file.items).filter(|item| it.find(item)).count() > 0 {}
         it
     }
 
