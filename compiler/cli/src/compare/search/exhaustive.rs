@@ -136,7 +136,7 @@ impl Exhaustive {
         if count > 0 {
             ages.extend(now.to_ne_bytes());
         }
-        let key = search.pair.key(&ages);
+        let key = search.pair.settled_key(&ages);
         ages.truncate(count);
         if self.seen.insert(key) {
             self.next.push(Entry { node: self.nodes.len(), place: search.pair.place(), ages, vector: *now });
