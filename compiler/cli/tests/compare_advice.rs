@@ -36,8 +36,9 @@ impl Taken {
     fn holds(&self, number: usize, from: &str, to: &str) {
         let name = format!("{number}_trap_{}_{from}_{to}", self.trap);
         let text = |word: &str| self.line(word).unwrap_or_else(|| panic!("{name}: no `{word}`"));
+        let folder = self.line("setting").map_or_else(String::new, |it| decided(&name, it));
         let write = |kind: &str, declared: &str, body: &str, dialect: &str| {
-            program(&format!("{name}_{kind}.st"), &in_words_of(declared, dialect), &in_words_of(body, dialect))
+            program(&format!("{folder}{name}_{kind}.st"), &in_words_of(declared, dialect), &in_words_of(body, dialect))
         };
         let declared = text("declared");
         let there = self.line("there").unwrap_or(declared);
@@ -72,14 +73,23 @@ const RISING: &str = "VAR_INPUT sensor, clear : BOOL; END_VAR VAR full, over : B
 fn scratch() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_advice");
     std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    // What is left open is decided: the advice is for a CTU of CODESYS that goes on past its preset, and for an Editor of
-    // OpenPLC that counts CD as it falls.
+    // What is left open is decided: the advice is for a CTU of CODESYS and Siemens that goes on past its preset, a CTD of S7
+    // that loads while LD is TRUE, and an Editor of OpenPLC that counts CD as it falls.
     static DECIDED: std::sync::Once = std::sync::Once::new();
     DECIDED.call_once(|| {
-        let decided = "ctu-stop-at-pv = false\nopenplc4-cd-edge = \"falling\"\n";
+        let decided = "ctu-stop-at-pv = false\ns7-ld = \"level\"\nopenplc4-cd-edge = \"falling\"\n";
         std::fs::write(folder.join("staunch.toml"), decided).expect("a project file");
     });
     folder
+}
+
+/// A folder of its own, with a setting.
+fn decided(name: &str, setting: &str) -> String {
+    let folder = scratch().join(name);
+    std::fs::create_dir_all(&folder).expect("a folder for the programs");
+    std::fs::write(folder.join("staunch.toml"), format!("ctu-stop-at-pv = false\n{setting}\n"))
+        .expect("a project file");
+    format!("{name}/")
 }
 
 fn program(name: &str, declared: &str, body: &str) -> PathBuf {

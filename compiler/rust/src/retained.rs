@@ -88,7 +88,8 @@ fn functions(walk: &Walk<'_>, params: &[TokenStream], names: &[Ident], body: &[T
         /// Tells the retained variables, their types and their order from those of other programs.
         pub const RETAINED_PROGRAM: u32 = #program;
 
-        /// Writes a record of the retained variables, which it leaves as they are.
+        /// Writes a record of the retained variables, which it leaves as they are. After a scan that returned an error
+        /// they are those of half a scan: the record before it is the one to keep.
         pub fn save_retained(bytes: &mut [u8; RETAINED_SIZE], stamp: firmware::Stamp, #(#params),*) {
             firmware::save(bytes, RETAINED_PROGRAM, stamp, |carrier| carry_retained(carrier, #(#names),*));
         }

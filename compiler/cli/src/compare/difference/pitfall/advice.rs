@@ -4,7 +4,7 @@
 mod texts;
 
 use super::list::Pitfall;
-use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4};
+use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
 use texts::{BLOCKS, FALLING, FROM_LOGIX, TO_LOGIX};
 
 /// Where no text is proved.
@@ -60,7 +60,7 @@ impl Pitfall {
         let text = texts.join(" ");
         match to {
             Cscape | Codesys => text.replace("R := ", "RESET := ").replace("LD := ", "LOAD := "),
-            Iec | Openplc | Openplc4 | Logix | Dialect::Siemens => text,
+            Iec | Openplc | Openplc4 | Logix | Siemens => text,
         }
     }
 }
