@@ -19,11 +19,12 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// A number without a type that is an operand; an integer, beside one of fewer bits than 32, or another literal.
-    pub(super) fn note_literals(&mut self, sides: [&Operand; 2], span: Span) {
+    /// A number without a type that is an operand; an integer, beside one of fewer bits than 32, or another literal. To
+    /// compare with an integer gives the same in its own type and in a wider one.
+    pub(super) fn note_literals(&mut self, sides: [&Operand; 2], is_compared: bool, span: Span) {
         let is_wide = |it: &Operand| matches!(it.ty(), Some(Type::Elementary(ty)) if !is_narrow(ty));
         for (literal, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
-            let counts = !matches!(literal, Operand::Integer(_)) || !is_wide(other);
+            let counts = !matches!(literal, Operand::Integer(_)) || !is_compared && !is_wide(other);
             if let (None, Some(class), true) = (literal.typed(), class_of(literal), counts) {
                 self.note_use(Use::Literal(class), span);
             }

@@ -289,6 +289,15 @@ impl Pair {
         self.key_of(ages)
     }
 
+    /// Goes on with counts that are just past all that they are compared with, in place of those of the last key that are
+    /// further; whether there are any.
+    pub fn move_counts(&mut self) -> bool {
+        for (side, offset, value) in self.settled.moved() {
+            self.sides[*side].write(*offset, *value);
+        }
+        !self.settled.moved().is_empty()
+    }
+
     fn key_of(&mut self, ages: &[u8]) -> u128 {
         let mut all = std::mem::take(&mut self.rest);
         all.clear();

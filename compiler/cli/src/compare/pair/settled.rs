@@ -1,8 +1,12 @@
 //! Counts past all that they are compared with are alike, so that an input that pulses for ever leads to few states.
 //!
-//! Two states that differ in such counts alone behave alike: no comparison tells them apart, and each counts on in its way
-//! until a reset or a load, whose result does not depend on the count. Where the count itself is compared between the systems, that holds
-//! while both have the same one, of the same type: if only one of them counts on, the two differ, and the search ends there.
+//! The programs ask no more of such a count than whether it is past a constant or a preset, which it stays until a reset or a
+//! load whose result does not depend on it. So two states that differ in these counts alone go the same way.
+//!
+//! Where the two systems' counts of one counter are compared with one another, that is not all that is asked of them. As long as
+//! they are the same, of one type, the search goes on with both just past: what makes them differ further on makes them differ
+//! there, since both stop at the same limit. The other way round does not hold where they have come to that limit, so that a
+//! difference which is found past there is shown once more from the start.
 
 use super::side::Side;
 use super::{Matched, Pair};
@@ -10,15 +14,17 @@ use crate::compare::program::bounds::{self, Bounds};
 use crate::compare::program::scalar::Instance;
 use crate::compare::program::walked::Name;
 use staunch_ir::Value;
-use staunch_runtime::{Family, PinRole, Repr};
+use staunch_runtime::{PinRole, Repr};
 use std::collections::HashMap;
 
 /// The counts of both systems that have bounds.
 #[derive(Debug, Default)]
 pub struct Settled {
     counts: Vec<Count>,
-    /// What is to be written into both states.
+    /// What a state is known by in place of its own counts: the side, the offset and the count.
     found: Vec<(usize, usize, Value)>,
+    /// Of these, the ones that the search goes on with.
+    moved: Vec<(usize, usize, Value)>,
 }
 
 #[derive(Debug)]
@@ -29,54 +35,46 @@ struct Count {
     places: [Option<(usize, Repr)>; 2],
     bounds: Bounds,
     is_compared: bool,
-    /// The two counts cannot stop, or turn round, at different limits.
-    is_alike: bool,
 }
 
 impl Count {
+    /// Of a block on each side, by its position; `None` where it has no bounds.
     fn of(pair: &Pair, found: [&HashMap<Name, Bounds>; 2], blocks: [Option<usize>; 2]) -> Option<Self> {
-        let instance = |side: usize| blocks[side].map(|it| &pair.sides[side].scalars.blocks[it]);
-        let instances = [instance(0), instance(1)];
+        let instances = [0, 1].map(|side: usize| blocks[side].map(|it| &pair.sides[side].scalars.blocks[it]));
         let mut bounds: Option<Bounds> = None;
         for (side, it) in instances.iter().enumerate() {
             let Some(it) = it else { continue };
-            let own = own(&pair.sides[side], it, found[side])?;
+            let own = own(&pair.sides[side], it, found[side]).filter(|_| !is_given(pair, side, it))?;
             bounds = Some(bounds.map_or(Some(own), |other| joined(own, other))?);
         }
         let place =
             |it: &Instance| it.block.info().pin_for(PinRole::Count).map(|pin| (it.offset + pin.offset, pin.repr()));
         let places = instances.map(|it| it.and_then(place));
-        let is_compared = pair.compared.iter().any(|it| {
-            (0..2).all(|side| places[side].is_some_and(|place| pair.scalar(side, it[side]).offset == place.0))
-        });
-        let kind = |it: Option<&Instance>| {
-            let info = it?.block.info();
-            Some((info.pin_for(PinRole::Count)?.repr(), info.family == Family::Logix))
-        };
-        let is_alike = kind(instances[0]) == kind(instances[1]);
-        let both = [blocks[0], blocks[1]];
-        let counter = pair.counters.iter().position(|it| it.map(Some) == both);
-        Some(Self { counter, places, bounds: bounds?, is_compared, is_alike })
+        let lies_at =
+            |side: usize, it: &Matched| places[side].is_some_and(|at| pair.scalar(side, it[side]).offset == at.0);
+        let is_compared = pair.compared.iter().any(|it| lies_at(0, it) || lies_at(1, it));
+        let counter = pair.counters.iter().position(|it| it.map(Some) == blocks);
+        Some(Self { counter, places, bounds: bounds?, is_compared })
     }
 
-    /// The count past all that it is compared with, in place of a greater or lesser one.
+    /// Just past the bounds, in place of what is further past them.
     fn past(&self, count: i128) -> Option<i128> {
         match self.bounds {
             Bounds { greatest, rises: true, .. } if count > greatest => Some(greatest + 1),
             Bounds { least, falls: true, .. } if count < least => Some(least - 1),
-            _ => None,
+            Bounds { .. } => None,
         }
     }
 
-    /// What takes the counts' places; and whether something is not told apart by it that a trap may depend on.
+    /// The counts, and those just past the bounds for each that is past them; and whether both sides have the same count, of one type.
     fn settle(&self, states: [&[u8]; 2]) -> ([Option<i128>; 2], bool) {
         let counts = [0, 1].map(|side: usize| self.places[side].and_then(|it| read(states[side], it)));
+        let is_same = match self.places {
+            [Some(a), Some(b)] => a.1 == b.1 && counts[0] == counts[1],
+            [Some(_), None] | [None, Some(_)] | [None, None] => false,
+        };
         let past = counts.map(|it| it.and_then(|it| self.past(it)));
-        let is_same = counts[0] == counts[1] && self.is_alike;
-        if self.is_compared && !is_same {
-            return ([None, None], false);
-        }
-        (past, !is_same && past.iter().any(Option::is_some))
+        if self.is_compared && !is_same { ([None, None], is_same) } else { (past, is_same) }
     }
 }
 
@@ -84,13 +82,18 @@ fn read(state: &[u8], (offset, repr): (usize, Repr)) -> Option<i128> {
     Value::read(repr, &state[offset..]).as_integer()
 }
 
+/// Whether the world outside writes a pin of it.
+fn is_given(pair: &Pair, side: usize, instance: &Instance) -> bool {
+    let all = instance.offset..instance.offset + instance.block.info().size;
+    pair.inputs.iter().any(|it| all.contains(&pair.scalar(side, it.scalars[side]).offset))
+}
+
 /// The bounds of a counter, with the preset that it starts with.
 fn own(side: &Side, instance: &Instance, found: &HashMap<Name, Bounds>) -> Option<Bounds> {
     let (owner, field) = instance.field?;
     let mut bounds = *found.get(&Name::Field(owner, field))?;
     bounds.add(instance.pin(PinRole::Preset, &side.initial)?);
-    let is_under = instance.block.info().pin("UN").is_some_and(|it| side.initial[instance.offset + it.offset] != 0);
-    (!is_under).then_some(bounds)
+    Some(bounds)
 }
 
 fn joined(a: Bounds, b: Bounds) -> Option<Bounds> {
@@ -113,21 +116,25 @@ impl Settled {
         let seconds = counts(1).map(|it| [None, Some(it)]);
         let all = both.chain(firsts).chain(seconds);
         let counts = all.filter_map(|it| Count::of(pair, found.each_ref(), it)).collect();
-        Self { counts, found: Vec::new() }
+        Self { counts, ..Self::default() }
     }
 
     /// Finds what is past all that it is compared with, and notes of which counters that leaves traps open.
     pub fn look(&mut self, states: [&[u8]; 2], open: &mut [bool]) -> bool {
-        self.found.clear();
+        self.clear();
         for count in &self.counts {
-            let (past, leaves_open) = count.settle(states);
+            let (past, is_same) = count.settle(states);
+            let before = self.found.len();
             for (side, past) in past.into_iter().enumerate() {
-                let place = count.places[side].zip(past);
+                let place = count.places[side].zip(past).filter(|(at, past)| read(states[side], *at) != Some(*past));
                 let value = place.and_then(|((offset, repr), it)| Some((side, offset, repr.integer(it)?)));
                 self.found.extend(value);
             }
-            if let Some(counter) = count.counter.filter(|_| leaves_open) {
-                open[counter] = true;
+            let new = &self.found[before..];
+            match count.counter.filter(|_| !is_same && !new.is_empty()) {
+                Some(counter) => open[counter] = true,
+                None if is_same => self.moved.extend_from_slice(new),
+                None => {}
             }
         }
         !self.found.is_empty()
@@ -135,11 +142,17 @@ impl Settled {
 
     pub fn clear(&mut self) {
         self.found.clear();
+        self.moved.clear();
     }
 
     /// Writes what was found into one side's state.
     pub fn write(&self, side: usize, state: &mut [u8]) {
         let own = self.found.iter().filter(|it| it.0 == side);
         own.for_each(|(_, offset, value)| value.write(&mut state[*offset..]));
+    }
+
+    /// What the search goes on with in place of what the last look saw: the side, the offset and the count.
+    pub fn moved(&self) -> &[(usize, usize, Value)] {
+        &self.moved
     }
 }

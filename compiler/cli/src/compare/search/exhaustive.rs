@@ -43,8 +43,12 @@ pub struct Exhaustive {
     pub depth: usize,
     /// No state is left.
     pub complete: bool,
-    /// There is no room for more states.
+    /// There is no room for more states, or none is left and something is doubtful.
     full: bool,
+    /// It goes on from states with other counts than those which were reached.
+    are_moved: bool,
+    /// Something was seen from such a state, and not from the start.
+    is_doubtful: bool,
 }
 
 /// The keys are hashes.
@@ -85,6 +89,8 @@ impl Exhaustive {
             depth: 0,
             complete: false,
             full: false,
+            are_moved: false,
+            is_doubtful: false,
         }
     }
 
@@ -108,7 +114,8 @@ impl Exhaustive {
 
     fn level(&mut self) {
         self.depth += 1;
-        self.complete = self.next.is_empty();
+        self.complete = self.next.is_empty() && !self.is_doubtful;
+        self.full = self.next.is_empty() && self.is_doubtful;
         self.frontier = std::mem::take(&mut self.next);
         self.at = (0, 0);
     }
@@ -126,8 +133,13 @@ impl Exhaustive {
         search.pair.go_to(place);
         let seen = search.scan(step);
         let node = Node { parent, symbol };
-        if !seen.is_empty() {
-            search.record(seen, || self.path(node));
+        if search.is_new(&seen) {
+            let trace = self.path(node);
+            if self.are_moved && !search.is_shown(&seen, &trace) {
+                self.is_doubtful = true;
+                return;
+            }
+            search.record(seen, || trace);
         }
         if search.ended() {
             return;
@@ -139,6 +151,7 @@ impl Exhaustive {
         let key = search.pair.settled_key(&ages);
         ages.truncate(count);
         if self.seen.insert(key) {
+            self.are_moved |= search.pair.move_counts();
             self.next.push(Entry { node: self.nodes.len(), place: search.pair.place(), ages, vector: *now });
             self.nodes.push(node);
         }
