@@ -49,6 +49,7 @@ w := REAL_TO_WORD(REAL#2.5);
 t := T#1s - T#2s;
 b := WORD#1 = WORD#2;
 b := n > 5 AND 7 <> SINT#2;
+n := n + 1 - (n * 3);
 END_PROGRAM
 ";
 
@@ -65,6 +66,10 @@ END_PROGRAM
         let found = |source: &str, wanted| used(&compiled(source), wanted);
         let only_compares = SOURCE.replace("2 + 3", "5");
         assert_eq!(found(&only_compares, Use::Literal(Class::Int)), None);
+        for wide in ["d := n + 1;", "b := n + 1 > 5;", "n := (n + 1) / n;", "n := MAX(n + 1, n);"] {
+            let source = only_compares.replace("n := 5;", wide).replace("n : INT;", "n : INT; d : DINT;");
+            assert_eq!(found(&source, Use::Literal(Class::Int)), Some(5), "{wide}");
+        }
         let found = |wanted| found(SOURCE, wanted);
         assert_eq!(found(Use::Function("LEFT")), Some(4));
         assert_eq!(found(Use::Function("RIGHT")), None);
