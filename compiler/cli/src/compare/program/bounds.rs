@@ -70,7 +70,12 @@ impl Counter {
 impl Walk<'_> {
     fn statement(&mut self, routine: &Routine, statement: &Statement) {
         let mut understood = Vec::new();
-        visit::all_exprs(statement, &mut |it| understood.extend(self.comparison(routine, it)));
+        visit::all_exprs(statement, &mut |it| {
+            understood.extend(self.comparison(routine, it));
+            if let ExprKind::AddressOf(place) = &it.kind {
+                self.access(routine, place, Access::Borrow);
+            }
+        });
         match &statement.kind {
             StatementKind::Case { selector, arms, .. } => {
                 if let Some((name, place)) = self.count(routine, selector) {

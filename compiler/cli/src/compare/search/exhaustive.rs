@@ -43,12 +43,10 @@ pub struct Exhaustive {
     pub depth: usize,
     /// No state is left.
     pub complete: bool,
-    /// There is no room for more states, or none is left and something is doubtful.
+    /// There is no room for more states, or one of them shows what is not seen from the start.
     full: bool,
     /// It goes on from states with other counts than those which were reached.
     are_moved: bool,
-    /// Something was seen from such a state, and not from the start.
-    is_doubtful: bool,
 }
 
 /// The keys are hashes.
@@ -90,7 +88,6 @@ impl Exhaustive {
             complete: false,
             full: false,
             are_moved: false,
-            is_doubtful: false,
         }
     }
 
@@ -108,14 +105,13 @@ impl Exhaustive {
             }
             self.at = if symbol + 1 < self.symbols.len() { (entry, symbol + 1) } else { (entry + 1, 0) };
             self.step(search, entry, symbol);
-            self.full = (self.next.len() + self.frontier.len()) * bytes > MAX_BYTES || self.seen.len() >= MAX_STATES;
+            self.full |= (self.next.len() + self.frontier.len()) * bytes > MAX_BYTES || self.seen.len() >= MAX_STATES;
         }
     }
 
     fn level(&mut self) {
         self.depth += 1;
-        self.complete = self.next.is_empty() && !self.is_doubtful;
-        self.full = self.next.is_empty() && self.is_doubtful;
+        self.complete = self.next.is_empty();
         self.frontier = std::mem::take(&mut self.next);
         self.at = (0, 0);
     }
@@ -136,7 +132,7 @@ impl Exhaustive {
         if search.is_new(&seen) {
             let trace = self.path(node);
             if self.are_moved && !search.is_shown(&seen, &trace) {
-                self.is_doubtful = true;
+                self.full = true;
                 return;
             }
             search.record(seen, || trace);
