@@ -16,7 +16,7 @@ pub use side::Side;
 use crate::compare::program::scalar::{self, Instance, Role, Scalar};
 use comparison::Comparison;
 use passing::{Passed, Passing};
-use settled::Settled;
+use settled::{Known, Settled};
 use staunch_host::{Bookmark, Event, Machine, Snapshot};
 use staunch_ir::{Chars, FieldId, StructId, Value};
 use staunch_runtime::FaultKind;
@@ -271,7 +271,8 @@ impl Pair {
 
     /// Looks for counts of which many are alike, by what is compared now.
     pub fn settle_counts(&mut self) {
-        self.settled = Settled::of(self);
+        let Self { sides, inputs, compared, counters, .. } = &*self;
+        self.settled = Settled::of(Known { sides, inputs, compared, counters });
         self.open = vec![false; self.counters.len()];
     }
 

@@ -8,14 +8,31 @@
 //! there, since both stop at the same limit. The other way round does not hold where they have come to that limit, so that a
 //! difference which is found past there is shown once more from the start.
 
+use super::scan::{Input, Matched};
 use super::side::Side;
-use super::{Matched, Pair};
 use crate::compare::program::bounds::{self, Bounds};
 use crate::compare::program::scalar::Instance;
 use crate::compare::program::walked::Name;
 use staunch_ir::Value;
 use staunch_runtime::{PinRole, Repr};
 use std::collections::HashMap;
+
+/// What is known of both systems before they run.
+#[derive(Clone, Copy)]
+pub struct Known<'p> {
+    pub sides: &'p [Side; 2],
+    pub inputs: &'p [Input],
+    /// What is compared now.
+    pub compared: &'p [Matched],
+    /// Counters that both sides have.
+    pub counters: &'p [Matched],
+}
+
+impl Known<'_> {
+    fn offset(&self, side: usize, scalar: usize) -> usize {
+        self.sides[side].scalars.all[scalar].offset
+    }
+}
 
 /// The counts of both systems that have bounds.
 #[derive(Debug, Default)]
@@ -39,21 +56,20 @@ struct Count {
 
 impl Count {
     /// Of a block on each side, by its position; `None` where it has no bounds.
-    fn of(pair: &Pair, found: [&HashMap<Name, Bounds>; 2], blocks: [Option<usize>; 2]) -> Option<Self> {
-        let instances = [0, 1].map(|side: usize| blocks[side].map(|it| &pair.sides[side].scalars.blocks[it]));
+    fn of(known: Known<'_>, found: [&HashMap<Name, Bounds>; 2], blocks: [Option<usize>; 2]) -> Option<Self> {
+        let instances = [0, 1].map(|side: usize| blocks[side].map(|it| &known.sides[side].scalars.blocks[it]));
         let mut bounds: Option<Bounds> = None;
         for (side, it) in instances.iter().enumerate() {
             let Some(it) = it else { continue };
-            let own = own(&pair.sides[side], it, found[side]).filter(|_| !is_given(pair, side, it))?;
+            let own = own(&known.sides[side], it, found[side]).filter(|_| !is_given(known, side, it))?;
             bounds = Some(bounds.map_or(Some(own), |other| joined(own, other))?);
         }
         let place =
             |it: &Instance| it.block.info().pin_for(PinRole::Count).map(|pin| (it.offset + pin.offset, pin.repr()));
         let places = instances.map(|it| it.and_then(place));
-        let lies_at =
-            |side: usize, it: &Matched| places[side].is_some_and(|at| pair.scalar(side, it[side]).offset == at.0);
-        let is_compared = pair.compared.iter().any(|it| lies_at(0, it) || lies_at(1, it));
-        let counter = pair.counters.iter().position(|it| it.map(Some) == blocks);
+        let lies_at = |side: usize, it: &Matched| places[side].is_some_and(|at| known.offset(side, it[side]) == at.0);
+        let is_compared = known.compared.iter().any(|it| lies_at(0, it) || lies_at(1, it));
+        let counter = known.counters.iter().position(|it| it.map(Some) == blocks);
         Some(Self { counter, places, bounds: bounds?, is_compared })
     }
 
@@ -83,9 +99,9 @@ fn read(state: &[u8], (offset, repr): (usize, Repr)) -> Option<i128> {
 }
 
 /// Whether the world outside writes a pin of it.
-fn is_given(pair: &Pair, side: usize, instance: &Instance) -> bool {
+fn is_given(known: Known<'_>, side: usize, instance: &Instance) -> bool {
     let all = instance.offset..instance.offset + instance.block.info().size;
-    pair.inputs.iter().any(|it| all.contains(&pair.scalar(side, it.scalars[side]).offset))
+    known.inputs.iter().any(|it| all.contains(&known.offset(side, it.scalars[side])))
 }
 
 /// The bounds of a counter, with the preset that it starts with.
@@ -104,18 +120,17 @@ fn joined(a: Bounds, b: Bounds) -> Option<Bounds> {
 }
 
 impl Settled {
-    /// Of what is compared now.
-    pub fn of(pair: &Pair) -> Self {
-        let found = [0, 1].map(|side: usize| bounds::of(&pair.sides[side].program));
-        let both = pair.counters.iter().map(|[a, b]| [Some(*a), Some(*b)]);
+    pub fn of(known: Known<'_>) -> Self {
+        let found = [0, 1].map(|side: usize| bounds::of(&known.sides[side].program));
+        let both = known.counters.iter().map(|[a, b]| [Some(*a), Some(*b)]);
         let counts = |side: usize| {
-            let all = pair.sides[side].scalars.blocks.iter().enumerate().filter(|it| it.1.counts());
-            all.map(|it| it.0).filter(move |at| !pair.counters.iter().any(|it: &Matched| it[side] == *at))
+            let all = known.sides[side].scalars.blocks.iter().enumerate().filter(|it| it.1.counts());
+            all.map(|it| it.0).filter(move |at| !known.counters.iter().any(|it: &Matched| it[side] == *at))
         };
         let firsts = counts(0).map(|it| [Some(it), None]);
         let seconds = counts(1).map(|it| [None, Some(it)]);
         let all = both.chain(firsts).chain(seconds);
-        let counts = all.filter_map(|it| Count::of(pair, found.each_ref(), it)).collect();
+        let counts = all.filter_map(|it| Count::of(known, found.each_ref(), it)).collect();
         Self { counts, ..Self::default() }
     }
 

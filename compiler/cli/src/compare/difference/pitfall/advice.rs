@@ -1,49 +1,19 @@
 //! What to do about a pitfall, by the direction of the move: what keeps a count on one system loses it on another.
 //! Each text is proved in each of its directions, by the cases of `tests/compare/advice.txt`.
 
+mod form;
 mod texts;
 
+pub use form::Form;
+
 use super::list::Pitfall;
+use form::Advice;
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
 use texts::{BLOCKS, FALLING, FROM_LOGIX, TO_LOGIX};
 
 /// Where no text is proved.
 const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
      with `--against`.";
-
-/// Which way a counter counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
-    /// CTU
-    Up,
-    /// CTD
-    Down,
-    /// CTUD
-    UpDown,
-}
-
-/// What is said about some pitfalls of a CTU, or of other counters, on a move from one of these systems to one of those.
-struct Advice {
-    /// What its cases call it.
-    #[cfg_attr(not(test), expect(dead_code, reason = "a test finds the cases by it"))]
-    name: &'static str,
-    pitfalls: &'static [usize],
-    from: &'static [Dialect],
-    to: &'static [Dialect],
-    /// The counters that it is proved for; empty where it says nothing of counting.
-    forms: &'static [Form],
-    text: &'static str,
-}
-
-impl Advice {
-    const fn of(self, forms: &'static [Form]) -> Self {
-        Self { forms, ..self }
-    }
-
-    fn is_for(&self, form: Form) -> bool {
-        self.forms.is_empty() || self.forms.contains(&form)
-    }
-}
 
 fn all() -> impl Iterator<Item = &'static Advice> {
     BLOCKS.iter().chain(FALLING).chain(TO_LOGIX).chain(FROM_LOGIX)

@@ -1,7 +1,7 @@
 //! The texts, and the moves that each is for.
 
-use super::Advice;
-use super::Form::{Down, Up, UpDown};
+use super::form::Advice;
+use super::form::Form::{Down, Up, UpDown};
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
 
 /// Of the systems whose counters are blocks, those that count CU on its rising edge: all but Cscape.
