@@ -14,7 +14,7 @@ pub enum Use {
     Operator(&'static str, Class),
     /// From one class to another, by a function or by itself.
     Conversion(Class, Class),
-    /// An operand that is a number without a type's name.
+    /// An operand that is a number without a type's name; an integer that something is compared with does not count.
     Literal(Class),
 }
 

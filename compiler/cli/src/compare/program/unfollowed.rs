@@ -36,7 +36,7 @@ fn used(program: &Program, wanted: Use) -> Option<u32> {
 mod tests {
     use super::{Use, used};
     use staunch_frontend::{Options, Source, Sources, compile};
-    use staunch_ir::Elementary;
+    use staunch_ir::{Elementary, Program};
     use staunch_runtime::Class;
 
     const SOURCE: &str = "PROGRAM p
@@ -48,17 +48,29 @@ r := 7.0 / 2.0;
 w := REAL_TO_WORD(REAL#2.5);
 t := T#1s - T#2s;
 b := WORD#1 = WORD#2;
+b := n > 5 AND 7 <> SINT#2;
+n := n + 1 - (n * 3);
 END_PROGRAM
 ";
+
+    fn compiled(source: &str) -> Program {
+        let mut sources = Sources::default();
+        sources.add(Source::new("uses.st", source.to_owned()));
+        let compiled = compile(&sources, &Options::default());
+        compiled.program.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics))
+    }
 
     /// Each kind of use is found, also where constants are folded.
     #[test]
     fn each_kind_of_use_is_found() {
-        let mut sources = Sources::default();
-        sources.add(Source::new("uses.st", SOURCE.to_owned()));
-        let compiled = compile(&sources, &Options::default());
-        let program = compiled.program.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics));
-        let found = |wanted| used(&program, wanted);
+        let found = |source: &str, wanted| used(&compiled(source), wanted);
+        let only_compares = SOURCE.replace("2 + 3", "5");
+        assert_eq!(found(&only_compares, Use::Literal(Class::Int)), None);
+        for wide in ["d := n + 1;", "b := n + 1 > 5;", "n := (n + 1) / n;", "n := MAX(n + 1, n);"] {
+            let source = only_compares.replace("n := 5;", wide).replace("n : INT;", "n : INT; d : DINT;");
+            assert_eq!(found(&source, Use::Literal(Class::Int)), Some(5), "{wide}");
+        }
+        let found = |wanted| found(SOURCE, wanted);
         assert_eq!(found(Use::Function("LEFT")), Some(4));
         assert_eq!(found(Use::Function("RIGHT")), None);
         assert_eq!(found(Use::Literal(Class::Int)), Some(5));
