@@ -2,16 +2,18 @@
 
 use crate::entry::EntryPoints;
 use crate::module::{ModuleEmitter, Workspace};
-use crate::{Error, entry, function, inline_block, inline_op};
+use crate::{Error, entry, function, inline_block};
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::Module;
 use staunch_ir::effects::{Rules, effects};
+use staunch_ir::faults::code_faults;
+use staunch_ir::promote::promoted;
 use staunch_ir::{Program, RoutineId};
 
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
     block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
-    operation_faults: inline_op::may_fault,
+    operation_faults: code_faults,
     drops_checks: true,
     scans_take_all: false,
 };
@@ -27,6 +29,7 @@ pub(crate) struct Emitted {
 
 /// Puts a whole program into `output`; a listing is added to where one is wanted.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
+    let program = &promoted(program);
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
     let mut module = ModuleEmitter::new(program, effects(program, &RULES), output);
     module.listing = listing;

@@ -1,0 +1,123 @@
+//! Which loops keep their variables in locals.
+
+use super::promoted;
+use crate::fixture::{
+    AT, add, assign, call_adder, call_counter, count, counter, int, load, sample, stmt, temp, total, value, wide,
+};
+use crate::verify::verify;
+use crate::{
+    Block, Conversion, Elementary, Expr, ExprKind, FieldId, For, Place, Program, Root, Statement, StatementKind, Step,
+    Taking, Type, Value,
+};
+
+const MAIN: usize = 3;
+
+/// `FOR count := 1 TO last DO … END_FOR`
+fn count_to(last: i16, body: Block) -> Statement {
+    let range = (i16::MIN.into(), i16::MAX.into());
+    let (first, last, step) = (int(1), int(last), Step::Constant(1));
+    let it =
+        For { counter: count(), first, last, step, range, is_private: true, body, taking: Taking::Each, step_at: AT };
+    it.statement(AT)
+}
+
+/// `values[of]`
+fn element(of: Place) -> Place {
+    let index = Expr { kind: ExprKind::Convert(Conversion::Value, Box::new(load(of))), ty: Type::LINT, at: AT };
+    value(index, 1)
+}
+
+fn dint(value: i32) -> Expr {
+    Expr::constant(Elementary::Dint, Value::I32(value), AT)
+}
+
+/// `total := total + 1`
+fn step_total() -> Statement {
+    assign(total(), Expr::apply(crate::Op::Add, Type::DINT, vec![load(total()), dint(1)], AT))
+}
+
+fn pass(body: Block) -> Program {
+    let before = sample(body);
+    verify(&before).unwrap();
+    let after = promoted(&before);
+    verify(&after).unwrap();
+    after
+}
+
+/// What the PROGRAM's statements and those in them write, besides locals.
+fn stored(program: &Program) -> Vec<String> {
+    let mut names = Vec::new();
+    let mut see = |place: &Place| match place.root {
+        Root::Local(_) => {}
+        Root::Instance | Root::Globals | Root::Param(_) => names.push(format!("{:?}", place.projections.first())),
+    };
+    crate::visit::statements(&program.routines[MAIN].body, &mut |it| crate::visit::targets(it, &mut see));
+    names
+}
+
+/// Loads, the loop, and stores.
+fn kinds(program: &Program) -> Vec<&'static str> {
+    let name = |it: &Statement| match &it.kind {
+        StatementKind::Assign { target, .. } if matches!(target.root, Root::Local(_)) => "load",
+        StatementKind::Assign { .. } => "store",
+        StatementKind::For(it) if matches!(it.counter.root, Root::Local(_)) => "for of a local",
+        StatementKind::For(_) => "for",
+        _ => "other",
+    };
+    program.routines[MAIN].body.iter().map(name).collect()
+}
+
+#[test]
+fn a_counter_and_a_sum_are_in_locals() {
+    let after = pass(vec![count_to(3, vec![assign(element(count()), int(7)), step_total()])]);
+    assert_eq!(kinds(&after), ["load", "for of a local", "store", "store"]);
+    assert_eq!(stored(&after).len(), 3, "the element, and each variable once");
+    let names: Vec<_> = after.routines[MAIN].locals.iter().map(|it| it.name.as_str()).collect();
+    assert_eq!(names, ["temp", "count", "total"]);
+}
+
+#[test]
+fn a_loop_that_can_fault_stays() {
+    let outside = pass(vec![count_to(4, vec![assign(element(count()), int(7))])]);
+    assert_eq!(kinds(&outside), ["for"]);
+    let unknown = pass(vec![count_to(3, vec![assign(element(wide()), int(7)), step_total()])]);
+    assert_eq!(kinds(&unknown), ["for"]);
+    let takes_turns = pass(vec![count_to(30000, vec![step_total()])]);
+    assert_eq!(kinds(&takes_turns), ["for"]);
+}
+
+#[test]
+fn a_loop_that_calls_or_returns_stays() {
+    assert_eq!(kinds(&pass(vec![count_to(3, vec![call_adder(temp())])])), ["for"]);
+    assert_eq!(kinds(&pass(vec![count_to(3, vec![step_total(), stmt(StatementKind::Return)])])), ["for"]);
+}
+
+#[test]
+fn what_a_block_writes_stays() {
+    let cv = counter().field(FieldId(4), Type::INT);
+    let body =
+        vec![call_counter(Expr::bool(true, AT), 3), assign(temp(), load(cv.clone())), assign(cv, int(1)), step_total()];
+    let after = pass(vec![count_to(3, body)]);
+    assert_eq!(kinds(&after), ["load", "for of a local", "store", "store"], "the counter of the loop, and total");
+}
+
+#[test]
+fn an_inner_loop_is_taken_where_the_outer_one_stays() {
+    let inner = count_to(3, vec![step_total()]);
+    let outer = stmt(StatementKind::If {
+        condition: Expr::bool(true, AT),
+        then: vec![call_adder(temp()), inner],
+        otherwise: Vec::new(),
+    });
+    let after = pass(vec![outer]);
+    let StatementKind::If { then, .. } = &after.routines[MAIN].body[0].kind else { panic!("it is still an IF") };
+    assert_eq!(then.len(), 5);
+}
+
+#[test]
+fn a_counter_whose_start_reads_it_is_loaded() {
+    let mut counted = count_to(3, vec![step_total()]);
+    let StatementKind::For(it) = &mut counted.kind else { panic!("it is a FOR") };
+    it.first = add(load(count()), int(1));
+    assert_eq!(kinds(&pass(vec![counted])).iter().filter(|it| **it == "load").count(), 2);
+}
