@@ -58,7 +58,6 @@ struct Promoter<'p> {
 struct Candidate {
     place: Place,
     local: LocalId,
-    is_read: bool,
     is_written: bool,
 }
 
@@ -88,7 +87,8 @@ impl Promoter<'_> {
         if !candidates.iter().any(|it| it.is_written) {
             return false;
         }
-        self.routine.locals.extend(candidates.iter().map(|it| self.local(&it.place)));
+        let locals: Vec<Local> = candidates.iter().map(|it| self.local(&it.place)).collect();
+        self.routine.locals.extend(locals);
         let mut promoted = statement.clone();
         let frame = Frame::of(self.program, self.routine);
         in_locals(&frame, &mut promoted, &candidates);
@@ -136,7 +136,6 @@ impl Promoter<'_> {
         let mut candidates: Vec<Candidate> = Vec::new();
         for (place, access) in &touched {
             if let Some(known) = candidates.iter_mut().find(|it| it.place.is_same_variable(place)) {
-                known.is_read |= *access == Access::Read;
                 known.is_written |= *access == Access::Write;
                 continue;
             }
@@ -147,8 +146,7 @@ impl Promoter<'_> {
             if self.is_scalar_variable(place) && !is_counter_of_turns(statement, place) && touched.iter().all(is_apart)
             {
                 let local = LocalId::next(self.routine.locals.len() + candidates.len());
-                let (is_read, is_written) = (*access == Access::Read, *access == Access::Write);
-                candidates.push(Candidate { place: place.clone(), local, is_read, is_written });
+                candidates.push(Candidate { place: place.clone(), local, is_written: *access == Access::Write });
             }
         }
         // What is only read needs no copy, unless the loop stores what might be it.
