@@ -95,6 +95,7 @@ impl Case {
                 ("moved-from", name) => settings.options.moved_from = Some(dialect(name)),
                 ("ctu-stop-at-pv", value) => settings.options.ctu_stop_at_pv = value == "on",
                 ("openplc4-cd-edge", value) => settings.options.openplc4_cd_rises = value == "rising",
+                ("s7-ld", value) => settings.options.s7_ld_edge = value == "edge",
                 ("openplc-f-trig", value) => settings.options.f_trig_before_2024_12 = value == "before-2024-12",
                 ("implicit-narrowing", value) => settings.options.implicit_narrowing = value == "on",
                 ("tests", value) => settings.options.tests = value == "on",

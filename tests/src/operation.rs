@@ -111,6 +111,7 @@ pub fn program(tasks: &[Task]) -> Program {
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
+        uses: staunch_ir::Uses::default(),
         structs,
         classes: tasks
             .iter()

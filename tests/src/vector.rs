@@ -70,6 +70,7 @@ impl<'j> Table<'j> {
         let dialect = if self.family == Family::Logix { Dialect::Logix } else { Dialect::Iec };
         let ctu_stop_at_pv = self.json["setup"]["stop"] == Json::Bool(true);
         let openplc4_cd_rises = self.json["setup"]["cd_edge"] == "rising";
+        let s7_ld_edge = self.json["setup"]["ld"] == "edge";
         let source = match self.block.name {
             "COUNTER" => self.instructions_source(),
             "FBD_COUNTER" => {
@@ -82,7 +83,7 @@ impl<'j> Table<'j> {
             id,
             title: text(&self.json["title"]),
             source,
-            options: Options { dialect, ctu_stop_at_pv, openplc4_cd_rises, ..Options::default() },
+            options: Options { dialect, ctu_stop_at_pv, openplc4_cd_rises, s7_ld_edge, ..Options::default() },
             scans: self.scans(),
         }
     }
@@ -239,6 +240,7 @@ fn family_and_name(table: &Json) -> (Family, String) {
         (b'C', name) => (Family::Codesys, name.to_owned()),
         (b'E', name) => (Family::Openplc, name.to_owned()),
         (b'F', name) => (Family::Openplc4, name.to_owned()),
+        (b'G', name) => (Family::S7, name.to_owned()),
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER".to_owned()),
         (b'D', _) => (Family::Logix, "COUNTER".to_owned()),
         (other, _) => panic!("no family {other}"),

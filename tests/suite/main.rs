@@ -9,6 +9,7 @@ mod vectors;
 
 mod constants;
 mod effects;
+mod facts;
 mod operations;
 mod pointers;
 mod programs;

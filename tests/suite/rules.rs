@@ -27,11 +27,20 @@ fn table() -> String {
         let shown: Vec<_> = shown.iter().map(|(evidence, names)| format!("{}: {evidence}", names.join(" "))).collect();
         writeln!(text, "| {} | {} |", row.rule, shown.join("; ")).unwrap();
     }
-    text.push_str("\nThese rules are known and not followed: a program that uses the type may have another value on the system.\n");
+    text.push_str(
+        "\nThese rules are known and not followed: a program that uses this may have another value on the system.\n",
+    );
     text.push_str("\n| dialect | uses | there | shown by |\n|---|---|---|---|\n");
     for it in rules::NOT_FOLLOWED {
-        let (dialect, uses) = (it.dialect.name(), it.uses.name());
+        let (dialect, uses) = (it.dialect.name(), it.uses.words());
         writeln!(text, "| `{dialect}` | {uses} | {} | {} |", it.what, it.evidence).unwrap();
+    }
+    text.push_str(
+        "\nWhere a vendor leaves a value open, or no page was found that has it, what happens here is a choice:\n",
+    );
+    text.push_str("\n| dialect | what | here | documented |\n|---|---|---|---|\n");
+    for it in rules::EDGES {
+        writeln!(text, "| `{}` | {} | {} | {} |", it.dialect.name(), it.what, it.here, it.documented).unwrap();
     }
     text
 }

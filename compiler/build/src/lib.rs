@@ -51,6 +51,7 @@ pub struct Build {
     dialect: Option<Dialect>,
     ctu_stop_at_pv: Option<bool>,
     openplc4_cd_rises: Option<bool>,
+    s7_ld_edge: Option<bool>,
     f_trig_before_2024_12: Option<bool>,
     implicit_narrowing: Option<bool>,
     levels: Vec<(Level, String)>,
@@ -105,6 +106,13 @@ impl Build {
     #[must_use]
     pub fn ctu_stop_at_pv(mut self, stops: bool) -> Self {
         self.ctu_stop_at_pv = Some(stops);
+        self
+    }
+
+    /// S7 loads its counters when LD becomes TRUE, and not while it is, as `s7-ld = "edge"` says.
+    #[must_use]
+    pub fn s7_ld_edge(mut self, is_edge: bool) -> Self {
+        self.s7_ld_edge = Some(is_edge);
         self
     }
 
@@ -240,6 +248,7 @@ impl Build {
             dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
             openplc4_cd_rises: self.openplc4_cd_rises.unwrap_or(project.openplc4_cd_rises),
+            s7_ld_edge: self.s7_ld_edge.unwrap_or(project.s7_ld_edge),
             f_trig_before_2024_12: self.f_trig_before_2024_12.unwrap_or(project.f_trig_before_2024_12),
             implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
             ..Default::default()

@@ -18,6 +18,8 @@ pub struct Project {
     pub ctu_stop_at_pv: bool,
     /// `openplc4-cd-edge = "rising"`.
     pub openplc4_cd_rises: bool,
+    /// `s7-ld = "edge"`.
+    pub s7_ld_edge: bool,
     pub f_trig_before_2024_12: bool,
     pub implicit_narrowing: bool,
     pub warn: Vec<String>,
@@ -137,6 +139,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "loop-budget" => project.loop_budget = Some(number(key, value)?),
         "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
         "openplc4-cd-edge" => project.openplc4_cd_rises = choice(key, value, &["falling", "rising"])? == "rising",
+        "s7-ld" => project.s7_ld_edge = choice(key, value, &["level", "edge"])? == "edge",
         "openplc-f-trig" => {
             project.f_trig_before_2024_12 = choice(key, value, &["now", "before-2024-12"])? == "before-2024-12";
         }
@@ -150,7 +153,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
             return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, openplc4-cd-edge, openplc-f-trig, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
+                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, openplc4-cd-edge, s7-ld, openplc-f-trig, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
             ));
         }
     }

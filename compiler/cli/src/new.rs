@@ -66,10 +66,10 @@ pub fn new(args: &args::New, common: &args::Common) -> Result<u8, String> {
     }
     let dialect = common.dialect.unwrap_or_default();
     let program = match dialect {
-        staunch_frontend::Dialect::Iec | staunch_frontend::Dialect::Openplc | staunch_frontend::Dialect::Openplc4 => {
-            PROGRAM.to_owned()
-        }
-        staunch_frontend::Dialect::Siemens => PROGRAM.replace("parts : CTU;", "parts : IEC.CTU;"),
+        staunch_frontend::Dialect::Iec
+        | staunch_frontend::Dialect::Openplc
+        | staunch_frontend::Dialect::Openplc4
+        | staunch_frontend::Dialect::Siemens => PROGRAM.to_owned(),
         staunch_frontend::Dialect::Cscape | staunch_frontend::Dialect::Codesys => {
             PROGRAM.replace("R := empty", "RESET := empty")
         }

@@ -382,6 +382,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         dialect,
         ctu_stop_at_pv: project.ctu_stop_at_pv,
         openplc4_cd_rises: project.openplc4_cd_rises,
+        s7_ld_edge: project.s7_ld_edge,
         f_trig_before_2024_12: project.f_trig_before_2024_12,
         implicit_narrowing: project.implicit_narrowing,
         moved_from: None,

@@ -36,8 +36,9 @@ impl Taken {
     fn holds(&self, number: usize, from: &str, to: &str) {
         let name = format!("{number}_trap_{}_{from}_{to}", self.trap);
         let text = |word: &str| self.line(word).unwrap_or_else(|| panic!("{name}: no `{word}`"));
+        let folder = self.line("setting").map_or_else(String::new, |it| decided(&name, it));
         let write = |kind: &str, declared: &str, body: &str, dialect: &str| {
-            program(&format!("{name}_{kind}.st"), &in_words_of(declared, dialect), &in_words_of(body, dialect))
+            program(&format!("{folder}{name}_{kind}.st"), &in_words_of(declared, dialect), &in_words_of(body, dialect))
         };
         let declared = text("declared");
         let there = self.line("there").unwrap_or(declared);
@@ -72,12 +73,22 @@ const RISING: &str = "VAR_INPUT sensor, clear : BOOL; END_VAR VAR full, over : B
 fn scratch() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_advice");
     std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    // What CODESYS leaves open is decided: the advice is for a CTU that goes on past its preset.
+    // What CODESYS and Siemens leave open is decided: the advice is for a CTU that goes on past its preset.
     static DECIDED: std::sync::Once = std::sync::Once::new();
     DECIDED.call_once(|| {
-        std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\n").expect("a project file");
+        std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\ns7-ld = \"level\"\n")
+            .expect("a project file");
     });
     folder
+}
+
+/// A folder of its own, with a setting.
+fn decided(name: &str, setting: &str) -> String {
+    let folder = scratch().join(name);
+    std::fs::create_dir_all(&folder).expect("a folder for the programs");
+    std::fs::write(folder.join("staunch.toml"), format!("ctu-stop-at-pv = false\n{setting}\n"))
+        .expect("a project file");
+    format!("{name}/")
 }
 
 fn program(name: &str, declared: &str, body: &str) -> PathBuf {

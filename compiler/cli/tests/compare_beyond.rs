@@ -460,6 +460,6 @@ fn a_reader_that_leaves_does_not_change_the_verdict() {
     let path = path.display().to_string();
     assert_eq!(command(&["compare", &path, "--from", "iec", "--to", "codesys"]), Some(1));
     assert_eq!(command(&["check", &path]), Some(0));
-    assert_eq!(command(&["check", &path, "--dialect", "siemens"]), Some(1));
+    assert_eq!(command(&["check", &path, "--dialect", "logix"]), Some(1));
     assert_eq!(command(&["check", "there/is/no/such/file.st"]), Some(2));
 }

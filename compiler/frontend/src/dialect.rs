@@ -26,7 +26,7 @@ pub enum Dialect {
     Openplc4,
     /// Rockwell Logix 5000.
     Logix,
-    /// SCL of Siemens' S7-1200 and S7-1500: as `Iec`, without counters by their bare names.
+    /// SCL of Siemens' S7: as `Iec`, with the IEC counters of S7.
     Siemens,
 }
 
@@ -71,21 +71,17 @@ impl Dialect {
         Self::names().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
     }
 
-    /// Whose rules its variables follow; SCL has no counters of its own here, and starts as the standard does.
+    /// Whose rules its variables follow, and whose blocks its bare names mean before those that all systems share.
     pub const fn family(self) -> Family {
         match self {
-            Self::Iec | Self::Siemens => Family::Iec,
+            Self::Iec => Family::Iec,
             Self::Cscape => Family::Cscape,
             Self::Codesys => Family::Codesys,
             Self::Openplc => Family::Openplc,
             Self::Openplc4 => Family::Openplc4,
             Self::Logix => Family::Logix,
+            Self::Siemens => Family::S7,
         }
-    }
-
-    /// Whose blocks its bare names mean before those that all systems share.
-    pub fn own_blocks(self) -> Option<Family> {
-        (self != Self::Siemens).then(|| self.family())
     }
 
     /// The standard block that a bare `name` means.
@@ -343,6 +339,12 @@ impl Dialect {
         matches!(self, Self::Codesys | Self::Siemens)
     }
 
+    /// `T#5m68s`: S7 has `500h10000ms` among its examples (S7-1200 manual V4.2, table 5-32), and MATIEC adds the units. The
+    /// standard, and CODESYS, let only the first unit overflow.
+    pub const fn takes_lower_units_that_overflow(self) -> bool {
+        matches!(self, Self::Siemens | Self::Openplc | Self::Openplc4 | Self::Logix)
+    }
+
     /// SEL and MUX evaluate only the input that is chosen, and MUX takes the last one for a K beyond it.
     pub const fn chooses_inputs(self) -> bool {
         matches!(self, Self::Codesys)
@@ -448,7 +450,7 @@ pub(crate) fn block_in(family: Family, name: &str) -> Option<BlockId> {
 /// What the bare `name` means under `dialect`, and what its family's name before it means: the
 /// family's own block, or what all systems share.
 pub(crate) fn bare_block(dialect: Dialect, name: &str) -> Option<BlockId> {
-    dialect.own_blocks().and_then(|it| block_in(it, name)).or_else(|| shared_block(name))
+    block_in(dialect.family(), name).or_else(|| shared_block(name))
 }
 
 /// What reads the scan's time.

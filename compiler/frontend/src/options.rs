@@ -13,6 +13,8 @@ pub struct Options {
     pub ctu_stop_at_pv: bool,
     /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
     pub openplc4_cd_rises: bool,
+    /// S7: `CTD` and `CTUD` are loaded when LD becomes TRUE, and not while it is.
+    pub s7_ld_edge: bool,
     /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
     pub f_trig_before_2024_12: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
@@ -35,6 +37,7 @@ impl Options {
         match option {
             BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,
             BlockOption::CdRises => self.openplc4_cd_rises,
+            BlockOption::LdEdge => self.s7_ld_edge,
             BlockOption::FTrigBefore202412 => self.f_trig_before_2024_12,
         }
     }
@@ -45,6 +48,7 @@ impl Options {
         match option {
             BlockOption::CtuStopAtPv => Self { ctu_stop_at_pv: is_on, ..self },
             BlockOption::CdRises => Self { openplc4_cd_rises: is_on, ..self },
+            BlockOption::LdEdge => Self { s7_ld_edge: is_on, ..self },
             BlockOption::FTrigBefore202412 => Self { f_trig_before_2024_12: is_on, ..self },
         }
     }
@@ -75,6 +79,12 @@ pub const OPEN_OPTIONS: &[OpenOption] = &[
         name: "openplc4-cd-edge",
         question: "OpenPLC Editor counts CD on its falling edge through 4.2.11; a later version may count the rising edge.",
         settings: ["falling", "rising"],
+    },
+    OpenOption {
+        option: BlockOption::LdEdge,
+        name: "s7-ld",
+        question: "Siemens' pages of CTD and CTUD say that PV is loaded while LD is 1, and that it is loaded when LD changes to 1.",
+        settings: ["level", "edge"],
     },
     OpenOption {
         option: BlockOption::FTrigBefore202412,

@@ -136,6 +136,46 @@ macro_rules! argument {
     };
 }
 
+/// The text of the data of a counter of S7, which is what it is called as: the CTUD has the count, whichever instruction works on it.
+macro_rules! counter {
+    ($name:ident, $type:ident) => {
+        concat!(
+            "FUNCTION_BLOCK ",
+            stringify!($name),
+            "\nVAR_INPUT CU, CD, R, LD : BOOL; PV : ",
+            stringify!($type),
+            "; END_VAR\nVAR_OUTPUT QU, QD : BOOL; CV : ",
+            stringify!($type),
+            "; END_VAR\nVAR count : S7.CTUD_",
+            stringify!($type),
+            "; END_VAR\n",
+            counter!(@method "CTU", "CU, R", "Q", $type),
+            "THIS.CTUD(CU := CU, CD := THIS.CD, R := R, LD := FALSE, PV := PV, QU => Q, CV => CV);\nEND_METHOD\n",
+            counter!(@method "CTD", "CD, LD", "Q", $type),
+            "THIS.CTUD(CU := THIS.CU, CD := CD, R := FALSE, LD := LD, PV := PV, QD => Q, CV => CV);\nEND_METHOD\n",
+            counter!(@method "CTUD", "CU, CD, R, LD", "QU, QD", $type),
+            "THIS.CU := CU; THIS.CD := CD; THIS.R := R; THIS.LD := LD; THIS.PV := PV;\n",
+            "count(CU := CU, CD := CD, R := R, LD := LD, PV := PV, QU => QU, QD => QD, CV => CV);\n",
+            "THIS.QU := QU; THIS.QD := QD; THIS.CV := CV;\nEND_METHOD\nEND_FUNCTION_BLOCK\n"
+        )
+    };
+    (@method $name:literal, $inputs:literal, $outputs:literal, $type:ident) => {
+        concat!(
+            "METHOD PUBLIC ",
+            $name,
+            "\nVAR_INPUT ",
+            $inputs,
+            " : BOOL; PV : ",
+            stringify!($type),
+            "; END_VAR\nVAR_OUTPUT ",
+            $outputs,
+            " : BOOL; CV : ",
+            stringify!($type),
+            "; END_VAR\n"
+        )
+    };
+}
+
 /// Every unit. Those of one name are of different dialects.
 pub(crate) const UNITS: &[Unit] = units! {
     Type     "BLINK"            "blink"            [Codesys: Util];
@@ -293,6 +333,14 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc Openplc4];
     Type     "SEMA"             "iec_sema"         [Iec Openplc Openplc4];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
+    Type     "IEC_COUNTER"      (counter!(IEC_COUNTER, INT))       [Siemens];
+    Type     "IEC_SCOUNTER"     (counter!(IEC_SCOUNTER, SINT))     [Siemens];
+    Type     "IEC_DCOUNTER"     (counter!(IEC_DCOUNTER, DINT))     [Siemens];
+    Type     "IEC_LCOUNTER"     (counter!(IEC_LCOUNTER, LINT))     [Siemens];
+    Type     "IEC_USCOUNTER"    (counter!(IEC_USCOUNTER, USINT))   [Siemens];
+    Type     "IEC_UCOUNTER"     (counter!(IEC_UCOUNTER, UINT))     [Siemens];
+    Type     "IEC_UDCOUNTER"    (counter!(IEC_UDCOUNTER, UDINT))   [Siemens];
+    Type     "IEC_ULCOUNTER"    (counter!(IEC_ULCOUNTER, ULINT))   [Siemens];
     Function "NORM_X"           "norm_x"           [Siemens];
     Function "SCALE_X"          "scale_x"          [Siemens];
     Type     "RTC"              "rtc"              [Iec Cscape Openplc Openplc4 Logix Siemens];

@@ -66,6 +66,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
+        uses: Uses::default(),
         structs,
         instances: vec![Instance {
             name: "main".to_owned(),

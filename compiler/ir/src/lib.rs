@@ -19,6 +19,7 @@
 
 mod program;
 mod types;
+mod uses;
 
 mod chars;
 mod expression;
@@ -67,6 +68,8 @@ pub use program::{
     View,
 };
 pub use statement::{Argument, Arm, Block, Count, For, Statement, StatementKind, Step, Taking};
+pub use uses::{Use, Uses};
+
 pub use types::{
     Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, InterfaceId, Overlay, RefKind,
     RefType, ReferenceId, Struct, StructId, Type,

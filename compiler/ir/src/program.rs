@@ -4,7 +4,7 @@ use crate::types::ids;
 
 use crate::{
     Array, ArrayId, Block, BoundsId, Const, Enum, EnumId, Location, Place, Projection, RefKind, RefType, ReferenceId,
-    Root, StatementKind, Struct, StructId, Type, visit,
+    Root, StatementKind, Struct, StructId, Type, Uses, visit,
 };
 use core::fmt;
 use staunch_runtime::Family;
@@ -50,6 +50,8 @@ pub struct Program {
     /// Structures that are the places of pools: the first field says whether the second is an object in use. A reference
     /// into an object that is not is a fault.
     pub places: BTreeSet<StructId>,
+    /// What the source uses that systems may compute otherwise.
+    pub uses: Uses,
     /// In an order in which a callee is before its callers.
     pub routines: Vec<Routine>,
     /// The programs that run, in order.

@@ -115,6 +115,7 @@ impl Maker {
             reentered: std::collections::BTreeSet::new(),
             reach: Reach::default(),
             places: std::collections::BTreeSet::new(),
+            uses: Default::default(),
             structs: maker.structs,
             classes: maker.classes,
             routines: maker.routines,

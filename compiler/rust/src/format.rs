@@ -416,6 +416,7 @@ fn is_module(name: &str) -> bool {
             | "codesys"
             | "openplc"
             | "openplc4"
+            | "s7"
             | "logix"
     )
 }

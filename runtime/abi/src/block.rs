@@ -1,6 +1,6 @@
 //! A shim for each instruction and each prescan of the standard blocks.
 
-use staunch_runtime::{Context, codesys, cscape, for_each_block, iec, logix, openplc, openplc4, run_instruction};
+use staunch_runtime::{Context, codesys, cscape, for_each_block, iec, logix, openplc, openplc4, run_instruction, s7};
 
 macro_rules! shims {
     ($($family:ident $name:literal $block:ty { $($pin:literal => $renamed:literal),* } $([$ty:ident => $retyped:ident])? $(#[$($fact:tt)*])* {

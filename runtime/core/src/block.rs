@@ -121,6 +121,10 @@ pub struct Facts {
     pub counts_falls: bool,
     /// It counts up only below its preset, and down only above 0.
     pub stops: bool,
+    /// It is loaded when its input becomes TRUE, and not while it is.
+    pub loads_on_edges: bool,
+    /// Pins that some controllers of the system, or its data of counters, call otherwise.
+    pub other_pins: &'static [OtherPin],
     /// A system that has not this block, and what it has in its place.
     pub instead: Option<(Family, &'static str)>,
 }
@@ -134,6 +138,8 @@ impl Facts {
         counts_levels: false,
         counts_falls: false,
         stops: false,
+        loads_on_edges: false,
+        other_pins: &[],
         instead: None,
     };
 }
@@ -152,8 +158,17 @@ pub enum BlockOption {
     CtuStopAtPv,
     /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
     CdRises,
+    /// S7: `CTD` and `CTUD` are loaded when LD becomes TRUE, and not while it is.
+    LdEdge,
     /// OpenPLC: `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
     FTrigBefore202412,
+}
+
+/// A second name of a pin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OtherPin {
+    pub name: &'static str,
+    pub pin: &'static str,
 }
 
 /// A counter with one pin more, for the variable that keeps its count over a restart.

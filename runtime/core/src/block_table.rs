@@ -3,8 +3,8 @@
 use crate::block::{renamed, retyped};
 use crate::elementary::keyword;
 use crate::{
-    Block, BlockInfo, BlockOption, Elementary, Facts, Family, Instruction, KeptCount, Pin, Prescan, Replacement,
-    Retention, codesys, cscape, iec, logix, openplc, openplc4,
+    Block, BlockInfo, BlockOption, Elementary, Facts, Family, Instruction, KeptCount, OtherPin, Pin, Prescan,
+    Replacement, Retention, codesys, cscape, iec, logix, openplc, openplc4, s7,
 };
 
 /// Every standard function block, one row each.
@@ -143,6 +143,49 @@ macro_rules! for_each_block {
             Openplc4 "TON" openplc4::Ton {} #[also "TON_TIME"] #[overload LTIME] #[in Logix "TONR with an FBD_TIMER"] { timed "" call staunch_openplc4_ton; }
             Openplc4 "TOF" openplc4::Tof {} #[also "TOF_TIME"] #[overload LTIME] #[in Logix "TOFR with an FBD_TIMER"] { timed "" call staunch_openplc4_tof; }
             Openplc4 "TP" openplc4::Tp {} #[also "TP_TIME"] #[overload LTIME] #[in Logix "no pulse timer: build it of a TONR"] { timed "" call staunch_openplc4_tp; }
+
+            // An S7-1200 counts in all but LINT and ULINT. A bare name counts in INT, as SFB 0, 1 and 2 do; those call LD LOAD.
+            S7 "CTU" s7::Ctu<i16> {} #[also "CTU_INT"] #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu; }
+            S7 "CTD" s7::Ctd<i16> {} #[also "CTD_INT"] #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd; }
+            S7 "CTUD" s7::Ctud<i16> {} #[also "CTUD_INT"] #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud; }
+            S7 "CTU_SINT" s7::Ctu<i8> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_sint; }
+            S7 "CTD_SINT" s7::Ctd<i8> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_sint; }
+            S7 "CTUD_SINT" s7::Ctud<i8> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_sint; }
+            S7 "CTU_DINT" s7::Ctu<i32> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_dint; }
+            S7 "CTD_DINT" s7::Ctd<i32> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_dint; }
+            S7 "CTUD_DINT" s7::Ctud<i32> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_dint; }
+            S7 "CTU_LINT" s7::Ctu<i64> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_lint; }
+            S7 "CTD_LINT" s7::Ctd<i64> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_lint; }
+            S7 "CTUD_LINT" s7::Ctud<i64> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_lint; }
+            S7 "CTU_USINT" s7::Ctu<u8> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_usint; }
+            S7 "CTD_USINT" s7::Ctd<u8> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_usint; }
+            S7 "CTUD_USINT" s7::Ctud<u8> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_usint; }
+            S7 "CTU_UINT" s7::Ctu<u16> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_uint; }
+            S7 "CTD_UINT" s7::Ctd<u16> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_uint; }
+            S7 "CTUD_UINT" s7::Ctud<u16> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_uint; }
+            S7 "CTU_UDINT" s7::Ctu<u32> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_udint; }
+            S7 "CTD_UDINT" s7::Ctd<u32> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_udint; }
+            S7 "CTUD_UDINT" s7::Ctud<u32> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_udint; }
+            S7 "CTU_ULINT" s7::Ctu<u64> {} #[pin "QU" is "Q"] { plain "" call staunch_s7_ctu_ulint; }
+            S7 "CTD_ULINT" s7::Ctd<u64> {} #[pin "LOAD" is "LD", "QD" is "Q"] { plain "" call staunch_s7_ctd_ulint; }
+            S7 "CTUD_ULINT" s7::Ctud<u64> {} #[pin "LOAD" is "LD"] { plain "" call staunch_s7_ctud_ulint; }
+            // What CTD and CTUD mean under the option `s7-ld = "edge"`.
+            S7 "CTD_LD_EDGE" s7::CtdLdEdge<i16> {} #[option LdEdge for "CTD"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_ld_edge; }
+            S7 "CTUD_LD_EDGE" s7::CtudLdEdge<i16> {} #[option LdEdge for "CTUD"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_ld_edge; }
+            S7 "CTD_SINT_LD_EDGE" s7::CtdLdEdge<i8> {} #[option LdEdge for "CTD_SINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_sint_ld_edge; }
+            S7 "CTUD_SINT_LD_EDGE" s7::CtudLdEdge<i8> {} #[option LdEdge for "CTUD_SINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_sint_ld_edge; }
+            S7 "CTD_DINT_LD_EDGE" s7::CtdLdEdge<i32> {} #[option LdEdge for "CTD_DINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_dint_ld_edge; }
+            S7 "CTUD_DINT_LD_EDGE" s7::CtudLdEdge<i32> {} #[option LdEdge for "CTUD_DINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_dint_ld_edge; }
+            S7 "CTD_LINT_LD_EDGE" s7::CtdLdEdge<i64> {} #[option LdEdge for "CTD_LINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_lint_ld_edge; }
+            S7 "CTUD_LINT_LD_EDGE" s7::CtudLdEdge<i64> {} #[option LdEdge for "CTUD_LINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_lint_ld_edge; }
+            S7 "CTD_USINT_LD_EDGE" s7::CtdLdEdge<u8> {} #[option LdEdge for "CTD_USINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_usint_ld_edge; }
+            S7 "CTUD_USINT_LD_EDGE" s7::CtudLdEdge<u8> {} #[option LdEdge for "CTUD_USINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_usint_ld_edge; }
+            S7 "CTD_UINT_LD_EDGE" s7::CtdLdEdge<u16> {} #[option LdEdge for "CTD_UINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_uint_ld_edge; }
+            S7 "CTUD_UINT_LD_EDGE" s7::CtudLdEdge<u16> {} #[option LdEdge for "CTUD_UINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_uint_ld_edge; }
+            S7 "CTD_UDINT_LD_EDGE" s7::CtdLdEdge<u32> {} #[option LdEdge for "CTD_UDINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_udint_ld_edge; }
+            S7 "CTUD_UDINT_LD_EDGE" s7::CtudLdEdge<u32> {} #[option LdEdge for "CTUD_UDINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_udint_ld_edge; }
+            S7 "CTD_ULINT_LD_EDGE" s7::CtdLdEdge<u64> {} #[option LdEdge for "CTD_ULINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_ulint_ld_edge; }
+            S7 "CTUD_ULINT_LD_EDGE" s7::CtudLdEdge<u64> {} #[option LdEdge for "CTUD_ULINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_ulint_ld_edge; }
 
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;
@@ -294,6 +337,12 @@ macro_rules! fact {
     };
     ($facts:ident, in $family:ident $instead:literal) => {
         Facts { instead: Some((Family::$family, $instead)), ..$facts }
+    };
+    ($facts:ident, loads_on_edges) => {
+        Facts { loads_on_edges: true, ..$facts }
+    };
+    ($facts:ident, pin $($other:literal is $pin:literal),+) => {
+        Facts { other_pins: &[$(OtherPin { name: $other, pin: $pin }),+], ..$facts }
     };
     ($facts:ident, stops) => {
         Facts { stops: true, ..$facts }

@@ -84,7 +84,7 @@ const LONG_NAMES: [(&str, Elementary); 4] = [
 macro_rules! classes {
     ($($(#[$doc:meta])* $class:ident $name:literal $($parent:ident)?;)*) => {
         /// A class of types, as the standard's figure of them has it (edition 3, figure 5).
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Class { $($(#[$doc])* $class),* }
 
         impl Class {

@@ -17,6 +17,8 @@ pub enum Family {
     Openplc4,
     /// Rockwell Logix 5000.
     Logix,
+    /// Siemens S7: the IEC counters of S7-300 and S7-400, S7-1200 and S7-1500.
+    S7,
 }
 
 /// Which variables an event leaves as they are.
@@ -29,7 +31,8 @@ pub enum Keeps {
 }
 
 impl Family {
-    pub const ALL: [Self; 6] = [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Openplc4, Self::Logix];
+    pub const ALL: [Self; 7] =
+        [Self::Iec, Self::Cscape, Self::Codesys, Self::Openplc, Self::Openplc4, Self::Logix, Self::S7];
 
     /// The name that qualifies its blocks in Structured Text: `CODESYS.CTU`.
     pub const fn name(self) -> &'static str {
@@ -40,13 +43,14 @@ impl Family {
             Self::Openplc => "OPENPLC",
             Self::Openplc4 => "OPENPLC4",
             Self::Logix => "LOGIX",
+            Self::S7 => "S7",
         }
     }
 
     /// What is left when the power fails and comes back.
     pub const fn over_power_cycle(self) -> Keeps {
         match self {
-            Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 => Keeps::Declared,
+            Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 | Self::S7 => Keeps::Declared,
             Self::Logix => Keeps::Everything,
         }
     }
@@ -54,7 +58,7 @@ impl Family {
     /// What is left when the controller goes from IDLE, or STOP, to RUN.
     pub const fn over_run(self) -> Keeps {
         match self {
-            Self::Iec | Self::Cscape | Self::Openplc | Self::Openplc4 => Keeps::Declared,
+            Self::Iec | Self::Cscape | Self::Openplc | Self::Openplc4 | Self::S7 => Keeps::Declared,
             Self::Codesys | Self::Logix => Keeps::Everything,
         }
     }
@@ -72,7 +76,9 @@ impl Family {
             (Self::Openplc, Elementary::Ltod) => Some("TOD"),
             (Self::Openplc, Elementary::Ldt) => Some("DT"),
             (Self::Openplc, Elementary::Char | Elementary::Wchar) => Some("STRING[1]"),
-            (Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 | Self::Logix, _) => None,
+            (Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 | Self::Logix | Self::S7, _) => {
+                None
+            }
         }
     }
 

@@ -37,11 +37,11 @@ mod block_table;
 pub mod blocks;
 
 pub use block::{
-    Block, BlockInfo, BlockOption, Direction, Facts, Instruction, KeptCount, Pin, PinRole, Prescan, Replacement,
-    Retention,
+    Block, BlockInfo, BlockOption, Direction, Facts, Instruction, KeptCount, OtherPin, Pin, PinRole, Prescan,
+    Replacement, Retention,
 };
 pub use block_table::BLOCKS;
-pub use blocks::{codesys, cscape, iec, logix, openplc, openplc4};
+pub use blocks::{codesys, cscape, iec, logix, openplc, openplc4, s7};
 pub use context::{Context, MinorFaults};
 pub use crc::{Crc32, crc32};
 pub use elementary::{Class, Elementary};

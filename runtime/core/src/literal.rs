@@ -188,6 +188,27 @@ pub fn duration(text: &str) -> Result<Time, LiteralError> {
     Time::try_from(total).map_err(|_| long)
 }
 
+/// Where a unit of a duration is not the longest one, and is as much as a longer one: `68s` in `5m68s`.
+///
+/// ```
+/// use staunch_runtime::literal::lower_overflow;
+/// assert_eq!(lower_overflow("5m68s"), Some((2, 5)));
+/// assert_eq!(lower_overflow("100s12ms"), None);
+/// ```
+pub fn lower_overflow(text: &str) -> Option<(usize, usize)> {
+    let mut at = usize::from(text.starts_with(['-', '+']));
+    let first = at;
+    while at < text.len() {
+        let part = part(text, at).ok()?;
+        let longer = part.unit.checked_sub(1).and_then(|it| UNITS.get(it)).map(|it| i128::from(it.1));
+        if at > first && longer.is_some_and(|it| part.nanoseconds >= it) {
+            return Some((at, part.end));
+        }
+        at = part.end;
+    }
+    None
+}
+
 /// The type that the prefix of such a literal names: `D`, `TIME`, `LDATE_AND_TIME`.
 pub fn type_of_prefix(prefix: &str) -> Option<Elementary> {
     let short =

@@ -20,7 +20,8 @@ macro_rules! for_each_op {
             Mul         "MUL"      mul        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    total extensible;
             Div         "DIV"      div        (IN1: T, IN2: T) -> T                  [ANY_MAGNITUDE as number]    faults;
             Mod         "MOD"      modulo     (IN1: T, IN2: T) -> T                  [ANY_INT as integer]         faults;
-            // MOD in OpenPLC.
+            // Those of S7, of OpenPLC the second alone.
+            DivOrZero   "_DIV_0"   div_or_zero (IN1: T, IN2: T) -> T                 [ANY_NUM as number]          total;
             ModOrZero   "_MOD_0"   modulo_or_zero (IN1: T, IN2: T) -> T              [ANY_INT as integer]         total;
             Neg         "NEG"      neg        (IN: T) -> T                           [ANY_MAGNITUDE as number]    total;
             Abs         "ABS"      abs        (IN: T) -> T                           [ANY_NUM as number]          total;
@@ -41,6 +42,10 @@ macro_rules! for_each_op {
             Floor       "_FLOOR"   floor      (IN: T) -> T                           [ANY_REAL as real]           total;
             Whole       "_WHOLE"   whole      (IN: T) -> T                           [ANY_REAL as real]           total;
             Nearest     "_NEAREST" nearest    (IN: T) -> T                           [ANY_REAL as real]           total;
+            // Conversions to integers that keep the low bits of a number which the type does not hold.
+            BitsOfNearest "_BITS_EVEN" low_bits_of_nearest (IN: T) -> LINT           [ANY_REAL as real]           total;
+            BitsOfHalfAway "_BITS_AWAY" low_bits_of_half_away (IN: T) -> LINT        [ANY_REAL as real]           total;
+            BitsOfWhole "_BITS_WHOLE" low_bits_of_whole (IN: T) -> LINT              [ANY_REAL as real]           total;
             // Conversions of OpenPLC, by way of LINT or seconds.
             RoundToLint "_LINT_OF" round_to_lint (IN: T) -> LINT                     [ANY_REAL as real]           total;
             RoundToUlint "_ULINT_OF" round_to_ulint (IN: T) -> LINT                  [ANY_REAL as real]           total;
@@ -48,6 +53,18 @@ macro_rules! for_each_op {
             TimeTimes   "_TIME_MUL" time_times (IN: T, BY: LREAL) -> LINT            [ANY_INT as long]            total;
             TimeOver    "_TIME_DIV" time_over (IN: T, BY: LREAL) -> LINT             [ANY_INT as long]            total;
             LimitLow    "_LIMIT_LOW" limit_low_first (MN: T, IN: T, MX: T) -> T      [ANY_ELEMENTARY as any]      total;
+            // LIMIT on S7.
+            LimitInOrder "_LIMIT_IN" limit_in_order (MN: T, IN: T, MX: T) -> T       [ANY_ELEMENTARY as any]      total;
+            TimePlus    "_TIME_ADD" time_plus (IN1: T, IN2: T) -> T                  [ANY_INT as long]            total;
+            TimeMinus   "_TIME_SUB" time_minus (IN1: T, IN2: T) -> T                 [ANY_INT as long]            total;
+            AbsIfBelow  "_ABS"     abs_if_below (IN: T) -> T                         [ANY_NUM as number]          total;
+            // Conversions of both systems that compile to C, as x86-64 makes them.
+            AwayFromZero "_AWAY"   away_from_zero (IN: T) -> LREAL                   [ANY_REAL as real]           total;
+            TruncDint   "_TRUNC_DINT" trunc_to_dint (IN: T) -> LINT                  [ANY_REAL as real]           total;
+            TruncLint   "_TRUNC_LINT" trunc_to_lint (IN: T) -> LINT                  [ANY_REAL as real]           total;
+            TruncUlint  "_TRUNC_ULINT" trunc_to_ulint (IN: T) -> LINT                [ANY_REAL as real]           total;
+            OfBcdOrZero "_OF_BCD"  from_bcd_or_zero (IN: T) -> T                     [ANY_INT as long]            total;
+            BcdOf       "_BCD_OF"  bcd_of     (IN: T) -> T                           [ANY_INT as long]            total;
             SecondsOf   "_SECONDS_OF" seconds_of (IN: T) -> LREAL                    [ANY_INT as long]            total;
             And         "AND"      and        (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
             Or          "OR"       or         (IN1: T, IN2: T) -> T                  [ANY_BIT as bits]            total extensible;
@@ -153,6 +170,9 @@ macro_rules! for_each_text_op {
             CompareStart "_COMPARE_START" compare_start (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
             FindOrEnd    "_FIND_OR_END" find_or_end (IN1: ANY_STRING, IN2: ANY_STRING) -> INT [each];
             ReplaceUpTo  "_REPLACE_UP_TO" replace_up_to (IN1: ANY_STRING, IN2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            MidOrLength  "_MID_OR_LENGTH" mid_or_length (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            InsertFrom   "_INSERT_FROM" insert_from (IN1: ANY_STRING, IN2: ANY_STRING, P: ANY_INT) -> ANY_STRING [each];
+            DeleteFrom   "_DELETE_FROM" delete_from (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
             FromBits     "_FROM_BITS"  from_bits  (IN: ULINT) -> STRING [one];
             FromGeneral  "_FROM_GENERAL" from_general (IN: LREAL) -> STRING [one];
             FromSeconds  "_FROM_SECONDS" from_seconds (IN: LINT, KIND: LINT) -> STRING [one];
@@ -169,6 +189,9 @@ macro_rules! for_each_text_op {
             ToBool       "_TO_BOOL"    to_bool    (IN: STRING) -> BOOL [one];
             ToLint       "_TO_LINT"    to_lint    (IN: STRING) -> LINT [one];
             ToUlint      "_TO_ULINT"   to_ulint   (IN: STRING) -> ULINT [one];
+            // Those of S7.
+            ToLintOr0    "_TO_LINT_0"  to_lint_or_0   (IN: STRING) -> LINT [one];
+            ToUlintOr0   "_TO_ULINT_0" to_ulint_or_0  (IN: STRING) -> ULINT [one];
             ToReal       "_TO_REAL"    to_real    (IN: STRING) -> REAL [one];
             ToLreal      "_TO_LREAL"   to_lreal   (IN: STRING) -> LREAL [one];
             ToFixedReal  "_TO_FIXED_REAL"  to_fixed_real  (IN: STRING) -> REAL [one];

@@ -3,7 +3,7 @@
 
 use staunch_runtime::time::ms;
 use staunch_runtime::{
-    BLOCKS, Block, BlockInfo, Context, Direction, Pin, PinRole, cscape, iec, logix, openplc, openplc4,
+    BLOCKS, Block, BlockInfo, Context, Direction, Pin, PinRole, cscape, iec, logix, openplc, openplc4, s7,
 };
 
 /// Runs a timer at each (time, IN, PT) in milliseconds and gives its (Q, ET).
@@ -169,6 +169,9 @@ fn a_call_is_inputs_and_a_step() {
     call_is_inputs_and_step!(openplc4::Ctd<u16>: cd: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(openplc4::Ctud<i32>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(openplc4::CtudRising<u64>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
+    call_is_inputs_and_step!(s7::Ctu<i8>: cu: bit, r: bit, pv: number);
+    call_is_inputs_and_step!(s7::CtdLdEdge<u8>: cd: bit, ld: bit, pv: number);
+    call_is_inputs_and_step!(s7::CtudLdEdge<i16>: cu: bit, cd: bit, r: bit, ld: bit, pv: number);
     call_is_inputs_and_step!(iec::RTrig: clk: bit);
     call_is_inputs_and_step!(iec::FTrig: clk: bit);
     call_is_inputs_and_step!(iec::Sr: s1: bit, r: bit);

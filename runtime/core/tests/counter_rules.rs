@@ -25,6 +25,8 @@ struct Rules {
     done_when_equal: bool,
     empty_when_below: bool,
     done_under_reset: bool,
+    /// A load acts when its input rises; nothing counts while it is TRUE.
+    load_is_an_edge: bool,
 }
 
 fn rules(family: char) -> Rules {
@@ -44,6 +46,7 @@ fn rules(family: char) -> Rules {
         done_when_equal: false,
         empty_when_below: true,
         done_under_reset: true,
+        load_is_an_edge: false,
     };
     let cscape = Rules {
         counts_levels: true,
@@ -54,7 +57,7 @@ fn rules(family: char) -> Rules {
         ..iec
     };
     match family {
-        'A' => iec,
+        'A' | 'G' => iec,
         'B' => cscape,
         'C' => Rules { stops_at_zero: true, ..iec },
         'E' => Rules { stops_at_preset: true, stops_at_zero: true, ..iec },
@@ -67,21 +70,21 @@ fn rules(family: char) -> Rules {
 type Broken = (&'static str, &'static str, fn(&mut Rules));
 
 const ROWS: [Broken; 18] = [
-    ("counts on", "ABCEF", |it| it.counts_levels ^= true),
+    ("counts on", "ABCEFG", |it| it.counts_levels ^= true),
     ("counts on", "F", |it| it.down_falls = false),
-    ("input TRUE on the very first call", "ABCEF", |it| it.first_call_counts = false),
-    ("edge under reset or load", "ACEF", |it| it.reset_consumes_edges = false),
-    ("priority", "ABCEF", |it| it.reset_beats_counting = false),
-    ("priority", "ACEF", |it| it.reset_beats_load = false),
-    ("reset and load", "ABCEF", |it| it.reset_is_a_level = false),
-    ("CTU past `PV`", "ABCEF", |it| it.stops_at_preset ^= true),
-    ("CTD below 0", "ABEF", |it| it.stops_at_zero ^= true),
-    ("at the type's limit", "AC", |it| it.saturates = false),
-    ("both edges of a CTUD", "ACE", |it| it.both_edges_cancel = false),
+    ("input TRUE on the very first call", "ABCEFG", |it| it.first_call_counts = false),
+    ("edge under reset or load", "ACEFG", |it| it.reset_consumes_edges = false),
+    ("priority", "ABCEFG", |it| it.reset_beats_counting = false),
+    ("priority", "ACEFG", |it| it.reset_beats_load = false),
+    ("reset and load", "ABCEFG", |it| it.reset_is_a_level = false),
+    ("CTU past `PV`", "ABCEFG", |it| it.stops_at_preset ^= true),
+    ("CTD below 0", "ABEFG", |it| it.stops_at_zero ^= true),
+    ("at the type's limit", "ACG", |it| it.saturates = false),
+    ("both edges of a CTUD", "ACEG", |it| it.both_edges_cancel = false),
     ("both edges of a CTUD", "F", |it| it.each_by_itself = false),
-    ("CTU `Q`", "ABCEF", |it| it.done_when_equal ^= true),
-    ("CTD `Q`", "ABEF", |it| it.empty_when_below ^= true),
-    ("`Q` is computed", "ABCEF", |it| it.done_under_reset = false),
+    ("CTU `Q`", "ABCEFG", |it| it.done_when_equal ^= true),
+    ("CTD `Q`", "ABEFG", |it| it.empty_when_below ^= true),
+    ("`Q` is computed", "ABCEFG", |it| it.done_under_reset = false),
     // Of what does not count below 0, that it stays there is what its limit says.
     ("CTD below 0", "C", |it| (it.saturates, it.stops_at_zero) = (false, false)),
     ("at the type's limit", "B", |it| it.stops_at_preset = false),
@@ -120,6 +123,9 @@ impl Counter {
         let up = edge(it.up, self.up_before);
         let level = |now: bool, before: bool| now && (rules.reset_is_a_level || !before);
         let (reset, load) = (level(it.reset, self.reset_before), level(it.load, self.load_before));
+        let held = rules.load_is_an_edge && it.load;
+        let load = load && !(held && self.load_before);
+        let (up, down) = (up && !held, down && !held);
         (self.reset_before, self.load_before) = (it.reset, it.load);
         if rules.reset_consumes_edges || !(reset || load) {
             (self.up_before, self.down_before) = (it.up, it.down);
@@ -173,6 +179,7 @@ fn failure(table: &Json, rules: Rules) -> Option<usize> {
         Json::Bool(true) => Rules { stops_at_preset: true, ..rules },
         _ => rules,
     };
+    let rules = Rules { load_is_an_edge: table["setup"]["ld"] == "edge", ..rules };
     let rules = Rules { down_falls: rules.down_falls && table["setup"]["cd_edge"] != "rising", ..rules };
     let mut pins = Map::new();
     let mut counter = Counter {
@@ -217,6 +224,9 @@ fn failure(table: &Json, rules: Rules) -> Option<usize> {
 
 fn limits(table: &Json) -> (i128, i128) {
     match table["type"].as_str() {
+        Some("SINT") => (i8::MIN.into(), i8::MAX.into()),
+        Some("USINT") => (0, u8::MAX.into()),
+        Some("UINT") => (0, u16::MAX.into()),
         Some("DINT") => (i32::MIN.into(), i32::MAX.into()),
         Some("LINT") => (i64::MIN.into(), i64::MAX.into()),
         Some("UDINT") => (0, u32::MAX.into()),
@@ -281,12 +291,15 @@ fn the_blocks_follow_the_rules() {
         (Family::Codesys, 'C'),
         (Family::Openplc, 'E'),
         (Family::Openplc4, 'F'),
+        (Family::S7, 'G'),
     ];
     for block in BLOCKS.iter().filter(|it| it.is_counter()) {
         let Some((_, letter)) = letters.iter().find(|it| it.0 == block.family) else { continue };
         let stops = block.facts.option.is_some_and(|it| it.option == BlockOption::CtuStopAtPv);
         let down_falls = block.facts.counts_falls;
-        let rules = Rules { stops_at_preset: stops || rules(*letter).stops_at_preset, down_falls, ..rules(*letter) };
+        let stops_at_preset = stops || rules(*letter).stops_at_preset;
+        let load_is_an_edge = block.facts.loads_on_edges;
+        let rules = Rules { stops_at_preset, down_falls, load_is_an_edge, ..rules(*letter) };
         for _ in 0..300 {
             random_calls(block, rules, &mut dice);
         }

@@ -9,7 +9,7 @@ use std::collections::HashSet;
 use serde_json::{Map, Value as Json};
 use staunch_runtime::{BLOCKS, BlockInfo, Context, Direction, Family, Instruction, Repr, Value};
 
-const TABLES: usize = 167;
+const TABLES: usize = 211;
 
 #[test]
 fn every_table_holds() {
@@ -160,6 +160,9 @@ fn block_of(table: &Json) -> &'static BlockInfo {
         (b'F', "CTD") if table["setup"]["cd_edge"] == "rising" => (Family::Openplc4, "CTD_RISING"),
         (b'F', "CTUD") if table["setup"]["cd_edge"] == "rising" => (Family::Openplc4, "CTUD_RISING"),
         (b'F', name) => (Family::Openplc4, name),
+        (b'G', "CTD") if table["setup"]["ld"] == "edge" => (Family::S7, "CTD_LD_EDGE"),
+        (b'G', "CTUD") if table["setup"]["ld"] == "edge" => (Family::S7, "CTUD_LD_EDGE"),
+        (b'G', name) => (Family::S7, name),
         (b'D', "CTUD (ST/FBD)") => (Family::Logix, "FBD_COUNTER"),
         (b'D', _) => (Family::Logix, "COUNTER"),
         (other, _) => panic!("no family {other}"),

@@ -2,12 +2,13 @@
 
 use crate::compiled::Compiled;
 use crate::map::{Map, Type, Variable};
+use crate::minor::minor_faults_note;
 use crate::path::Place;
 use crate::run::running;
 use crate::schedule::Schedule;
 use crate::stimulus::Stimulus;
 use crate::{Error, Machine};
-use staunch_runtime::{Context, Elementary, Time};
+use staunch_runtime::{Context, Elementary, MinorFaults, Time};
 use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -85,6 +86,7 @@ pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Resul
         turns: options.loop_budget.unwrap_or(Context::TURNS),
         number: 0,
         now: 0,
+        minor_faults: MinorFaults::default(),
     };
     let batch = bench.warm_up()?;
     let mut samples = Vec::with_capacity(1 << 16);
@@ -93,6 +95,9 @@ pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Resul
         let count = options.scans.map_or(batch, |wanted| batch.min(wanted - scans));
         samples.push(bench.batch(count)?.as_nanos() as f64 / count as f64);
         scans += count;
+    }
+    if let Some(note) = minor_faults_note(bench.minor_faults, map) {
+        crate::error::tell(format_args!("{note}"));
     }
     samples.sort_by(f64::total_cmp);
     let at = |part: f64| samples.get(((samples.len() as f64 - 1.0).max(0.0) * part) as usize).copied().unwrap_or(0.0);
@@ -155,6 +160,7 @@ struct Bench<'a> {
     turns: u64,
     number: u64,
     now: Time,
+    minor_faults: MinorFaults,
 }
 
 impl Bench<'_> {
@@ -220,7 +226,12 @@ impl Bench<'_> {
         let first_scan = std::mem::take(&mut self.fresh[instance]);
         let cx = Context::new(now, first_scan).with_turns(self.turns);
         let cx = cx.with_cycle(self.schedule.period(instance));
-        self.machine.scan(instance, &cx).map_err(|fault| Error::Fault {
+        let ran = self.machine.scan(instance, &cx);
+        let reported = cx.minor_faults();
+        if reported.count > 0 {
+            self.minor_faults = self.minor_faults.and(reported);
+        }
+        ran.map_err(|fault| Error::Fault {
             fault,
             scan: self.number,
             instance: self.map.instances[instance].name.clone(),

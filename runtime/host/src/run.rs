@@ -4,6 +4,7 @@ use crate::column::columns;
 use crate::json::quote;
 use crate::map::Map;
 use crate::messages::Messages;
+use crate::minor::{minor_faults_json, minor_faults_note};
 use crate::path::{nearest, same};
 use crate::replace::{Role, keep_apart};
 use crate::retain::{Ending, Pace, Retention};
@@ -387,19 +388,12 @@ impl Runner<'_> {
 
     /// Says how often the program has divided by zero and continued, and where first.
     fn tell_minor_faults(&self) -> Result<(), Error> {
-        let MinorFaults { count, first: Some(at) } = self.minor_faults else { return Ok(()) };
-        let path = self.map.file(at.file);
         if self.options.json {
-            let (path, line, column) = (quote(path), at.line, at.column);
-            let place = format!("\"file\":{path},\"line\":{line},\"column\":{column}");
-            return self.options.print_json(&format!("{{\"reason\":\"minor-faults\",\"count\":{count},{place}}}"));
+            let told = minor_faults_json(self.minor_faults, self.map);
+            return told.map_or(Ok(()), |it| self.options.print_json(&it));
         }
-        let divisions = if count == 1 { "1 division".to_owned() } else { format!("{count} divisions") };
-        if !self.options.quiet {
-            crate::error::tell(format_args!(
-                "note: {divisions} by zero, the first at {path}:{}:{}: a minor fault (type 4, code 4), and the program continues",
-                at.line, at.column
-            ));
+        if let Some(note) = minor_faults_note(self.minor_faults, self.map).filter(|_| !self.options.quiet) {
+            crate::error::tell(format_args!("{note}"));
         }
         Ok(())
     }

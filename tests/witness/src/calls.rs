@@ -122,10 +122,10 @@ impl<'a> Machine<'a> {
         let formals = self.formals(pou);
         let declares =
             |name| formals.iter().any(|it| it.name.eq_ignore_ascii_case(name)) && !self.declared.is_codesys();
-        // Without an ENO it is like any other input of a PROGRAM, and of every POU in Cscape and Logix.
+        // Without an ENO it is like any other input of a PROGRAM, and of every POU in Cscape, Logix and SCL.
         let is_plain = !declares("ENO")
             && (self.declared.pous[pou].kind == PouKind::Program
-                || matches!(self.declared.family, Family::Cscape | Family::Logix));
+                || matches!(self.declared.family, Family::Cscape | Family::Logix | Family::S7));
         let enable = own.names.get("EN").filter(|_| declares("EN") && !is_plain);
         let enabled = enable.map_or(Ok(true), |it| self.read(it).as_bool())?;
         if let Some(eno) = own.names.get("ENO").filter(|_| declares("ENO")) {
@@ -532,7 +532,9 @@ impl<'a> Machine<'a> {
                     // The standard: "in exactly the same order" as they are declared.
                     let mut free: Vec<&Formal<'a>> = match self.declared.family {
                         Family::Iec | Family::Cscape | Family::Openplc | Family::Openplc4 => formals.iter().collect(),
-                        Family::Codesys | Family::Logix => outputs_last(false).chain(outputs_last(true)).collect(),
+                        Family::Codesys | Family::Logix | Family::S7 => {
+                            outputs_last(false).chain(outputs_last(true)).collect()
+                        }
                     };
                     let free = free.drain(..).find(|it| !taken.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
                     let Some(free) = free else { return unknown("an argument too many") };

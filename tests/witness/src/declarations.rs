@@ -67,7 +67,8 @@ pub(crate) struct Declarations<'a> {
 impl<'a> Declarations<'a> {
     pub fn new(files: &'a [ast::File<'a>], family: Family) -> Outcome<Self> {
         let family = family_of(files, family)?;
-        let capacity = if matches!(family, Family::Iec | Family::Openplc | Family::Openplc4) { 254 } else { 80 };
+        let capacity =
+            if matches!(family, Family::Iec | Family::Openplc | Family::Openplc4 | Family::S7) { 254 } else { 80 };
         let mut this = Self {
             files,
             names: Names::new(files)?,

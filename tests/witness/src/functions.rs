@@ -9,7 +9,7 @@ use crate::storage::{Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name};
-use staunch_runtime::{FaultKind, Value as Scalar, ops};
+use staunch_runtime::{Family, FaultKind, Value as Scalar, ops};
 
 /// An argument, and the position of its parameter.
 pub(crate) type Given<'a> = (usize, &'a Expr<'a>);
@@ -400,13 +400,16 @@ impl<'a> Machine<'a> {
         let named = |it: &str| Elementary::named(it).map_or_else(|| unknown(&format!("the function {name}")), Ok);
         if name == "TRUNC" {
             let to = asked.and_then(Type::elementary).filter(|it| it.is_integer()).unwrap_or(Elementary::Dint);
-            return truncated(&self.value(frame, expr, None)?, to);
+            let value = self.value(frame, expr, None)?;
+            return self.truncated(&value, to);
         }
         if let Some(to) = name.strip_prefix("TRUNC_") {
-            return truncated(&self.value(frame, expr, None)?, named(to)?);
+            let value = self.value(frame, expr, None)?;
+            return self.truncated(&value, named(to)?);
         }
         if let Some((from, to)) = name.split_once("_TRUNC_") {
-            return truncated(&self.value_as(frame, expr, &Type::Elementary(named(from)?))?, named(to)?);
+            let value = self.value_as(frame, expr, &Type::Elementary(named(from)?))?;
+            return self.truncated(&value, named(to)?);
         }
         if let Some(to) = name.strip_prefix("TO_") {
             let value = self.value(frame, expr, None)?;
@@ -447,7 +450,7 @@ impl<'a> Machine<'a> {
                 Ok(in_repr(count.as_scalar()?, to))
             }
             (false, true) if from.is_real() && self.is_codesys() => {
-                let whole = in_repr(scalar, Elementary::Lint).as_scalar()?;
+                let whole = self.whole(scalar, Elementary::Lint).as_scalar()?;
                 let factor = Scalar::I64(unit(to));
                 let count = self.applied("MUL", Elementary::Lint, &[whole, factor], at)?;
                 Ok(in_repr(count.as_scalar()?, to))
@@ -460,8 +463,34 @@ impl<'a> Machine<'a> {
                 Ok(Value::bool(value.as_integer()? & 1 == 1))
             }
             _ if to == Elementary::Bool && !real => Ok(Value::bool(value.as_integer()? != 0)),
-            _ => Ok(in_repr(scalar, to)),
+            _ => Ok(self.whole(scalar, to)),
         }
+    }
+
+    /// A number of another type. What an integer type does not hold of a real is cut in Logix, CODESYS and OpenPLC from v4.1; the latter
+    /// two round halves away from zero.
+    fn whole(&self, value: Scalar, to: Elementary) -> Value<'a> {
+        let real = match value {
+            Scalar::F32(it) => f64::from(it),
+            Scalar::F64(it) => it,
+            _ => return in_repr(value, to),
+        };
+        let nearest = match self.declared.family {
+            Family::Logix => real.round_ties_even(),
+            Family::Codesys | Family::Openplc4 => real.round(),
+            Family::Iec | Family::Cscape | Family::Openplc | Family::S7 => return in_repr(value, to),
+        };
+        if to == Elementary::Bool || to.is_real() { in_repr(value, to) } else { low_bits(nearest, to) }
+    }
+
+    fn truncated(&self, value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
+        let scalar = value.as_scalar()?;
+        let is_cut = matches!(self.declared.family, Family::Logix | Family::Codesys | Family::Openplc4);
+        Ok(match scalar {
+            Scalar::F32(it) if is_cut => low_bits(f64::from(it).trunc(), to),
+            Scalar::F64(it) if is_cut => low_bits(it.trunc(), to),
+            _ => Value::scalar(to, ops::trunc_value(scalar, to.repr())),
+        })
     }
 
     /// The type that arguments have between them, where they are elementary.
@@ -497,8 +526,10 @@ fn typed(name: &str) -> Option<(BinaryOp, Elementary)> {
     Some((operator(name)?, Elementary::named(ty)?))
 }
 
-fn truncated<'a>(value: &Value<'a>, to: Elementary) -> Outcome<Value<'a>> {
-    Ok(Value::scalar(to, ops::trunc_value(value.as_scalar()?, to.repr())))
+/// The low bits of a whole number. From 2^117 on the lowest 64 bits are 0.
+fn low_bits<'a>(whole: f64, to: Elementary) -> Value<'a> {
+    let number = if whole.abs() < 2.0_f64.powi(117) { whole as i128 } else { 0 };
+    in_repr(Scalar::U64((number & i128::from(u64::MAX)) as u64), to)
 }
 
 /// Whether it is an ENO whose target has something to evaluate.

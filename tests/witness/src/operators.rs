@@ -38,6 +38,12 @@ impl<'a> Machine<'a> {
                 _ => {}
             }
         }
+        let of_bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
+        // A negative one is a DINT, with zeros above it beside 64 bits.
+        let is_filled = |it: &Expr<'_>| untyped(it).is_some() && literal_number(it).is_none_or(|it| it < 0);
+        if of_bits && self.declared.family == Family::Logix && [left, right].into_iter().any(is_filled) {
+            return unknown("the bits of an immediate value in Logix");
+        }
         let (a, b) = self.sides(frame, left, right, asked)?;
         self.operate(op, a, b, at, asked)
     }
@@ -67,13 +73,13 @@ impl<'a> Machine<'a> {
                     // What number a reference is nobody says.
                     return if is_null(right) { Ok((a, null())) } else { unknown("the number of a reference") };
                 }
-                let ty = beside(&a.ty, kind, literal_number(right), asked)?;
+                let ty = self.beside(&a.ty, kind, literal_number(right), asked)?;
                 let b = self.number(right, ty)?;
                 Ok((a, b))
             }
             (Some(kind), None) => {
                 let b = self.value(frame, right, asked)?;
-                let ty = beside(&b.ty, kind, literal_number(left), asked)?;
+                let ty = self.beside(&b.ty, kind, literal_number(left), asked)?;
                 let a = self.number(left, ty)?;
                 Ok((a, b))
             }
@@ -138,12 +144,16 @@ impl<'a> Machine<'a> {
 
     /// One of the runtime's operations at a type. A comparison gives a BOOL.
     pub(crate) fn applied(&self, name: &str, ty: Elementary, operands: &[Scalar], at: Span) -> Outcome<Value<'a>> {
-        // In Logix an integer that is divided by zero stays what it is. (1756-RM003N, p. 277, 281)
-        if let ("DIV" | "MOD", Family::Logix, [a, b]) = (name, self.declared.family, operands)
+        // In Logix an integer that is divided by zero stays what it is (1756-RM003N, p. 277, 281); S7 gives 0.
+        if let ("DIV" | "MOD", [a, b]) = (name, operands)
             && ty.is_integer()
             && in_repr(*b, Elementary::Lint).as_integer()? == 0
         {
-            return Ok(Value::scalar(ty, *a));
+            match self.declared.family {
+                Family::Logix => return Ok(Value::scalar(ty, *a)),
+                Family::S7 => return Ok(in_repr(Value::scalar(Elementary::Dint, Scalar::I32(0)).as_scalar()?, ty)),
+                Family::Iec | Family::Cscape | Family::Codesys | Family::Openplc | Family::Openplc4 => {}
+            }
         }
         match apply(name, ty.repr(), operands) {
             None => unknown(&format!("{name} of {ty:?}")),
@@ -152,23 +162,6 @@ impl<'a> Machine<'a> {
                 let is_test = matches!(name, "EQ" | "NE" | "LT" | "LE" | "GT" | "GE");
                 Ok(Value::scalar(if is_test { Elementary::Bool } else { ty }, value))
             }
-        }
-    }
-}
-
-/// The type of a number beside a typed operand: the operand's, or a wider one that holds it.
-fn beside(ty: &Type<'_>, kind: Untyped, number: Option<i128>, asked: Option<&Type<'_>>) -> Outcome<Elementary> {
-    let Some(ty) = ty.elementary() else { return unknown("a number beside what is none") };
-    match kind {
-        _ if ty.is_time() => Ok(if kind == Untyped::Integer { Elementary::Lint } else { Elementary::Lreal }),
-        Untyped::Integer => Ok(number.map_or(ty, |it| ty.that_holds(it))),
-        Untyped::Real if ty.is_real() => Ok(ty),
-        Untyped::Real => {
-            let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
-            let real = if asks { Elementary::Lreal } else { Elementary::Real };
-            // In CODESYS and Logix an LREAL, where they meet 64 bits.
-            let long = ty.as_number().is_integer() && ty.repr().size() == 8;
-            Ok(ty.meets(real).unwrap_or(if long { Elementary::Lreal } else { real }))
         }
     }
 }
@@ -267,5 +260,30 @@ fn apply(name: &str, repr: Repr, operands: &[Scalar]) -> Option<Result<Scalar, F
         "MIN" => at!(any repr operands min a b),
         "LIMIT" => at!(any repr operands limit a b c),
         _ => None,
+    }
+}
+
+impl Machine<'_> {
+    /// The type of a number beside a typed operand: the operand's, or a wider one that holds it.
+    fn beside(
+        &self,
+        ty: &Type<'_>,
+        kind: Untyped,
+        number: Option<i128>,
+        asked: Option<&Type<'_>>,
+    ) -> Outcome<Elementary> {
+        let Some(ty) = ty.elementary() else { return unknown("a number beside what is none") };
+        match kind {
+            _ if ty.is_time() => Ok(if kind == Untyped::Integer { Elementary::Lint } else { Elementary::Lreal }),
+            Untyped::Integer => Ok(number.map_or(ty, |it| ty.that_holds(it))),
+            Untyped::Real if ty.is_real() => Ok(ty),
+            Untyped::Real => {
+                let asks = asked.and_then(Type::elementary) == Some(Elementary::Lreal);
+                let real = if asks { Elementary::Lreal } else { Elementary::Real };
+                // In CODESYS an LREAL, where they meet 64 bits.
+                let long = ty.as_number().is_integer() && ty.repr().size() == 8 && self.is_codesys();
+                Ok(ty.meets(real).unwrap_or(if long { Elementary::Lreal } else { real }))
+            }
+        }
     }
 }

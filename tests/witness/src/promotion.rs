@@ -25,8 +25,17 @@ impl<'a> Machine<'a> {
             let order = |it: &Elementary| (it.repr().size(), !it.repr().is_unsigned());
             return [a, b].into_iter().max_by_key(order);
         }
+        if self.declared.family == Family::Logix {
+            // The later one of these. (1756-RM006K, p. 541)
+            use Elementary as E;
+            let ranks = [E::Sint, E::Usint, E::Int, E::Uint, E::Dint, E::Udint, E::Lint, E::Ulint, E::Real, E::Lreal];
+            let rank = |it: E| ranks.iter().position(|ranked| *ranked == it);
+            if let Some((x, y)) = rank(a).zip(rank(b)) {
+                return Some(ranks[x.max(y)]);
+            }
+        }
         let long_with_real = |x: Elementary, y: Elementary| {
-            x.is_real() && self.widening(y).is_integer() && y.repr().size() == 8 && self.mixes_long_and_real()
+            x.is_real() && self.widening(y).is_integer() && y.repr().size() == 8 && self.is_codesys()
         };
         let known = a.meets(b).or_else(|| self.widening(a).meets(self.widening(b)));
         known.or_else(|| (long_with_real(a, b) || long_with_real(b, a)).then_some(Elementary::Lreal))
@@ -35,11 +44,6 @@ impl<'a> Machine<'a> {
     /// Whether a value is taken where one of `to` is asked for.
     pub(crate) fn widens(&self, from: Elementary, to: Elementary) -> bool {
         from.widens_to(to) || self.widening(from).widens_to(self.widening(to))
-    }
-
-    /// Both make an LREAL of 64 bits beside a real.
-    fn mixes_long_and_real(&self) -> bool {
-        matches!(self.declared.family, Family::Codesys | Family::Logix)
     }
 
     /// In CODESYS a bit string is an unsigned number too.

@@ -10,9 +10,9 @@ use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use staunch_frontend::Test;
-use staunch_host::{Machine, Map, value_at};
+use staunch_host::{Machine, Map, minor_faults_json, minor_faults_note, value_at};
 use staunch_ir::Program;
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::{Context, Fault, MinorFaults};
 use std::path::PathBuf;
 use std::sync::Mutex;
 
@@ -27,6 +27,15 @@ pub struct Suite<'p> {
     pub pace: Pace,
     /// What the tests execute, where it is counted.
     pub counts: Option<&'p Mutex<Counts>>,
+    /// The divisions by zero after which programs continued.
+    minor: Mutex<Minor>,
+}
+
+/// Minor faults of all tests, and what is told of them: as text, and as JSON.
+#[derive(Default)]
+struct Minor {
+    faults: MinorFaults,
+    told: Option<(String, String)>,
 }
 
 /// What one thread runs its tests on.
@@ -35,6 +44,7 @@ pub struct Executor<'p> {
     turns: u64,
     pace: Pace,
     counts: Option<&'p Mutex<Counts>>,
+    minor: &'p Mutex<Minor>,
 }
 
 enum Runs<'p> {
@@ -56,12 +66,28 @@ impl<'p> Suite<'p> {
         // A suite does in one scan what a program does in many; interpreted, so many turns would take minutes.
         let patience = if args.backend == Backend::Interpret { 1 } else { 100 };
         let turns = args.loop_budget.or(session.project.loop_budget).unwrap_or(Context::TURNS * patience);
-        Ok(Self { program, backend: args.backend, executable, turns, pace: Pace::of(session, args)?, counts })
+        Ok(Self {
+            program,
+            backend: args.backend,
+            executable,
+            turns,
+            pace: Pace::of(session, args)?,
+            counts,
+            minor: Mutex::default(),
+        })
     }
 
     /// For a program that runs once, and is not worth to be compiled.
     pub fn interpreted(program: &'p Program, turns: u64, pace: Pace) -> Self {
-        Self { program, backend: Backend::Interpret, executable: None, turns, pace, counts: None }
+        Self {
+            program,
+            backend: Backend::Interpret,
+            executable: None,
+            turns,
+            pace,
+            counts: None,
+            minor: Mutex::default(),
+        }
     }
 
     /// An executor for the tests of the instances that are `wanted`.
@@ -77,7 +103,12 @@ impl<'p> Suite<'p> {
                 Runs::Here(Box::new(machine), Box::new(map))
             }
         };
-        Ok(Executor { runs, turns: self.turns, pace: self.pace, counts: self.counts })
+        Ok(Executor { runs, turns: self.turns, pace: self.pace, counts: self.counts, minor: &self.minor })
+    }
+
+    /// What is told of the minor faults of tests that ran here: as text, and as JSON.
+    pub fn minor_faults(&self) -> Option<(String, String)> {
+        self.minor.lock().ok()?.told.clone()
     }
 }
 
@@ -127,12 +158,15 @@ impl Executor<'_> {
     }
 
     fn outcome(&mut self, instance: usize, test: &Test) -> Result<Outcome, String> {
+        let minor = self.minor;
         match &mut self.runs {
             Runs::Here(machine, map) => {
                 machine.init();
                 for first_scan in [true, false] {
                     let cx = Context::new(0, first_scan).with_turns(self.turns).with_cycle(self.pace.cycle);
-                    if let Err(fault) = machine.scan(instance, &cx) {
+                    let ran = machine.scan(instance, &cx);
+                    note(minor, &cx, map);
+                    if let Err(fault) = ran {
                         return Ok(Outcome::Faulted(place_of(fault, map)));
                     }
                     let values = |name: &str| value_at(map, &[instance], machine.state(), name);
@@ -149,7 +183,7 @@ impl Executor<'_> {
 
     /// Runs these tests of a fixture on one instance of it, up to a fault.
     fn fixture(&mut self, instance: usize, test: &Test, steps: &[Step]) -> Result<Vec<Outcome>, String> {
-        let (turns, cycle) = (self.turns, self.pace.cycle);
+        let (turns, cycle, minor) = (self.turns, self.pace.cycle, self.minor);
         match &mut self.runs {
             Runs::Here(machine, map) => {
                 machine.init();
@@ -160,7 +194,9 @@ impl Executor<'_> {
                         machine.write(place.offset, &value.bytes());
                     }
                     let cx = Context::new(now, now == 0).with_turns(turns).with_cycle(cycle);
-                    if let Err(fault) = machine.scan(instance, &cx) {
+                    let ran = machine.scan(instance, &cx);
+                    note(minor, &cx, map);
+                    if let Err(fault) = ran {
                         outcomes.push(Outcome::Faulted(place_of(fault, map)));
                         break;
                     }
@@ -176,7 +212,7 @@ impl Executor<'_> {
 
     /// Runs a suite, such that what fails first in the test of a number is kept; 0 for any.
     fn suite(&mut self, instance: usize, test: &Test, wanted: usize, see: &mut suite::See<'_>) -> Result<(), String> {
-        let (turns, Pace { scans, cycle }) = (self.turns, self.pace);
+        let (turns, minor, Pace { scans, cycle }) = (self.turns, self.minor, self.pace);
         match &mut self.runs {
             Runs::Here(machine, map) => {
                 machine.init();
@@ -188,6 +224,7 @@ impl Executor<'_> {
                 for scan in 0..scans {
                     let cx = Context::new(now, scan == 0).with_turns(turns).with_cycle(cycle);
                     fault = machine.scan(instance, &cx).err().map(|it| place_of(it, map));
+                    note(minor, &cx, map);
                     if fault.is_some() || value_at(map, &[instance], machine.state(), &over)? == "TRUE" {
                         break;
                     }
@@ -198,6 +235,15 @@ impl Executor<'_> {
             }
             Runs::Apart(executable) => apart::suite(executable, test, turns, self.pace, wanted, see),
         }
+    }
+}
+
+/// Adds what a scan has reported to that of all tests.
+fn note(minor: &Mutex<Minor>, cx: &Context, map: &Map) {
+    let reported = cx.minor_faults();
+    if let (1.., Ok(mut minor)) = (reported.count, minor.lock()) {
+        minor.faults = minor.faults.and(reported);
+        minor.told = minor_faults_note(minor.faults, map).zip(minor_faults_json(minor.faults, map));
     }
 }
 

@@ -61,6 +61,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
         output::print(text.as_bytes())?;
     }
     output::print(run.report.end().as_bytes())?;
+    run.tell_minor_faults()?;
     if let Some(path) = &args.junit {
         output::write(path, junit::text(&run.report).as_bytes())?;
     }
@@ -123,6 +124,18 @@ impl Run<'_> {
                 cases.try_for_each(|it| output::print(report.add_test(tests[piece].1, it).as_bytes()))
             },
         )
+    }
+
+    /// A division by zero after which the program continues fails no test, and is told.
+    fn tell_minor_faults(&self) -> Result<(), String> {
+        let Some((note, object)) = self.suite.minor_faults() else { return Ok(()) };
+        if self.session.common.format() == args::MessageFormat::Json {
+            return output::print(format!("{object}\n").as_bytes());
+        }
+        if !self.session.common.quiet {
+            output::tell(note);
+        }
+        Ok(())
     }
 
     fn tables(&mut self, tables: &[Table]) -> Result<(), String> {

@@ -403,3 +403,21 @@ END_TEST
     let folder = Folder::with("task_info_of_a_project", &project);
     has(&folder.staunch("test .").out(0), &["1 passed, 0 failed"]);
 }
+
+/// Logix continues after a division by zero: each command says how often, and where first.
+#[test]
+fn minor_faults_are_told() {
+    let main = "{dialect 'logix'}\nPROGRAM Main\nVAR n, d, q : DINT; END_VAR\nn := n + 1;\nq := n / d;\nEND_PROGRAM\n";
+    let folder = Folder::with("minor", &[("main.st", main)]);
+    let note =
+        "3 divisions by zero, the first at main.st:5:8: a minor fault (type 4, code 4), and the program continues";
+    has(&folder.staunch("run main.st --scans 3").err, &[note]);
+    let json = folder.staunch("run main.st --scans 3 --message-format json").out(0);
+    has(&json, &["{\"reason\":\"minor-faults\",\"count\":3,\"file\":\"main.st\",\"line\":5,\"column\":8}\n"]);
+    has(&folder.staunch("bench main.st --scans 3").err, &[" by zero, the first at main.st:5:8"]);
+    let test = "{dialect 'logix'}\nTEST 'share'\nVAR a : DINT := 7; b, q : DINT; END_VAR\nq := a / b;\nASSERT_EQ(q, 7);\nEND_TEST\n";
+    let folder = Folder::with("minor_test", &[("main.st", test)]);
+    has(&folder.staunch("test main.st").err, &["1 division by zero, the first at main.st:4:8"]);
+    let json = folder.staunch("test main.st --message-format json").out(0);
+    has(&json, &["{\"reason\":\"minor-faults\",\"count\":1,\"file\":\"main.st\",\"line\":4,\"column\":8}\n"]);
+}

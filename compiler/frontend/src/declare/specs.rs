@@ -34,7 +34,7 @@ const OF_SIMATIC: [(&str, &str); 4] = [
     ("S5TIME", "write `TIME`, with literals `T#2s`: the standard's timers take it, and it counts exactly"),
     ("DTL", "write `LDT`, or `DT` for seconds; `SPLIT_LDT` and `CONCAT_LDT` give and take its parts"),
     ("VARIANT", "write a FUNCTION of this name for each type, or parameters of `ANY` or `ANY_NUM`"),
-    ("IEC_COUNTER", "write the counter's type: `IEC.CTU`, `IEC.CTD` or `IEC.CTUD`"),
+    ("IEC_COUNTER", "write the counter's type: `S7.CTU`, `S7.CTD` or `S7.CTUD`"),
 ];
 
 /// What other languages call elementary types.

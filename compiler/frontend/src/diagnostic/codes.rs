@@ -97,6 +97,7 @@ codes! {
     E0210 Error "an instance is not a value";
     E0211 Error "a reference is needed, or cannot be made";
     E0212 Error "a reference that outlives what it refers to";
+    E0214 Error "a lower unit of a TIME overflows";
     W0202 Warning "a text is cut";
     E0301 Error "unknown pin or parameter";
     E0302 Error "wrong number of arguments";
@@ -144,6 +145,7 @@ codes! {
     E0901 Error "too large";
     E0902 Error "not supported yet";
     E0903 Error "too many temporary variables";
+    E0904 Error "a counter of S5";
     W0301 Warning "RCV is not retained";
     W0302 Warning "RETAIN does not keep this count";
     W0303 Warning "a block that starts anew at each call";
@@ -173,10 +175,15 @@ codes! {
     W0517 Warning "a name of the standard's is declared again";
     W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
+    W0521 Warning "a shift that C leaves undefined";
+    W0523 Warning "division by the constant 0";
+    W0524 Warning "immediate values give more than a DINT holds";
+    W0525 Warning "a lower unit of a TIME overflows";
     W0526 Warning "a body reads its own EN";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";
     W0612 Warning "a counter's own output resets it";
+    W0613 Warning "a preset that moves under a load";
     W0616 Warning "a count down on the falling edge";
 }

@@ -3,13 +3,16 @@
 //! is in the runtime. `docs/dialects.md` has the same table, which a test holds equal.
 
 use super::Dialect;
-use staunch_runtime::Elementary;
+pub use staunch_ir::Use;
+use staunch_runtime::{Class, Elementary};
 
 /// How one dialect computes.
 #[derive(Debug)]
 pub struct Rules {
     pub narrow_integers: Followed<NarrowIntegers>,
+    pub mixed_numbers: Followed<MixedNumbers>,
     pub real_to_integer: Followed<RealToInteger>,
+    pub halves: Followed<Halves>,
     pub integer_to_bool: Followed<ToBool>,
     pub bits_to_bool: Followed<ToBool>,
     pub division_by_zero: Followed<ByZero>,
@@ -21,14 +24,21 @@ pub struct Rules {
     pub integer_text: Followed<IntegerText>,
     pub date_as_number: Followed<DateAsNumber>,
     pub real_of_text: Followed<RealOfText>,
-    pub replace_before: Followed<ReplaceBefore>,
+    pub text_positions: Followed<TextPositions>,
+    pub limit_crossed: Followed<LimitCrossed>,
     pub sqrt_of_negative: Followed<SqrtOfNegative>,
     pub modulo_of_reals: Followed<ModuloOfReals>,
     pub rotated_constant: Followed<RotatedConstant>,
     pub functions: Followed<Functions>,
+    pub literals: Followed<Literals>,
 }
 
 impl Rules {
+    /// Two numbers of different types are computed at the type that ranks higher.
+    pub const fn ranks_numbers(&self) -> bool {
+        matches!(self.mixed_numbers.choice, MixedNumbers::Ranked)
+    }
+
     /// A division of integers by zero gives the dividend, and the program continues.
     pub const fn divides_by_zero(&self) -> bool {
         matches!(self.division_by_zero.choice, ByZero::Reported)
@@ -57,8 +67,12 @@ impl Rules {
         matches!(self.real_of_text.choice, RealOfText::FixedPoint)
     }
 
-    pub const fn replaces_nothing_before(&self) -> bool {
-        matches!(self.replace_before.choice, ReplaceBefore::Empty)
+    pub const fn empties_texts_out_of_range(&self) -> bool {
+        matches!(self.text_positions.choice, TextPositions::Empty)
+    }
+
+    pub const fn limits_only_in_order(&self) -> bool {
+        matches!(self.limit_crossed.choice, LimitCrossed::Value)
     }
 
     pub const fn takes_root_of_magnitude(&self) -> bool {
@@ -95,8 +109,18 @@ impl Rules {
         matches!(self.real_to_integer.choice, RealToInteger::LowBitsOfLint)
     }
 
+    /// A real is converted as C does on x86-64, after it was rounded.
+    pub const fn rounds_by_c(&self) -> bool {
+        matches!(self.real_to_integer.choice, RealToInteger::RoundedByC)
+    }
+
     pub const fn keeps_sign(&self) -> bool {
         matches!(self.shr_of_signed.choice, ShrOfSigned::Sign)
+    }
+
+    /// A number without a type is a double, an int or a long, as in C.
+    pub const fn has_literals_of_c(&self) -> bool {
+        matches!(self.literals.choice, Literals::OfC)
     }
 
     pub const fn writes_plus(&self) -> bool {
@@ -141,12 +165,33 @@ impl Choice for NarrowIntegers {
     }
 }
 
+/// At which type two numbers of different types are computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MixedNumbers {
+    HoldsBoth,
+    HoldsMost,
+    Ranked,
+}
+
+impl Choice for MixedNumbers {
+    const RULE: &'static str = "numbers of different types";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::HoldsBoth => "at one that holds all values of both; refused where there is none",
+            Self::HoldsMost => "at one that holds all values of both; LINT or LREAL where there is none",
+            Self::Ranked => "at the higher of SINT, USINT, INT, UINT, DINT, UDINT, LINT, ULINT, REAL, LREAL",
+        }
+    }
+}
+
 /// What a real becomes that the integer type does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RealToInteger {
     Saturates,
     LowBits,
     LowBitsOfLint,
+    RoundedByC,
 }
 
 impl Choice for RealToInteger {
@@ -157,6 +202,26 @@ impl Choice for RealToInteger {
             Self::Saturates => "the nearest value of the type",
             Self::LowBits => "the low bits of the whole number",
             Self::LowBitsOfLint => "the low bits of a LINT; 0 for an unsigned type and a negative value",
+            Self::RoundedByC => "the low bits of 32, or of 64 for longer types and UDINT, as C converts on x86-64",
+        }
+    }
+}
+
+/// What a real becomes that lies in the middle of two integers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Halves {
+    ToEven,
+    /// With `LowBits` and `RoundedByC` alone: no other system is known to round so.
+    AwayFromZero,
+}
+
+impl Choice for Halves {
+    const RULE: &'static str = "REAL to integer, halves";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::ToEven => "the even one: 2.5 is 2",
+            Self::AwayFromZero => "away from zero: 2.5 is 3",
         }
     }
 }
@@ -339,20 +404,40 @@ impl Choice for RealOfText {
     }
 }
 
-/// What REPLACE gives where P is below 1, or L below 0.
+/// What MID, DELETE and REPLACE give where P is below 1, DELETE and REPLACE where L is below 0, and INSERT where P is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReplaceBefore {
+pub enum TextPositions {
     Nearest,
     Empty,
 }
 
-impl Choice for ReplaceBefore {
-    const RULE: &'static str = "REPLACE with P < 1 or L < 0";
+impl Choice for TextPositions {
+    const RULE: &'static str = "P < 1 or L < 0 in MID, DELETE and REPLACE, P < 0 in INSERT";
 
     fn words(self) -> &'static str {
         match self {
             Self::Nearest => "acts as P = 1, L = 0",
             Self::Empty => "an empty text",
+        }
+    }
+}
+
+/// What LIMIT gives where MN is above MX.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LimitCrossed {
+    Maximum,
+    Value,
+    Minimum,
+}
+
+impl Choice for LimitCrossed {
+    const RULE: &'static str = "LIMIT with MN > MX";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Maximum => "MX",
+            Self::Value => "IN; NaN where one is NaN",
+            Self::Minimum => "MN, or MX where IN is above MN",
         }
     }
 }
@@ -429,9 +514,29 @@ impl Choice for Functions {
     }
 }
 
+/// What a number is that has no type's name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Literals {
+    OfTheirPlace,
+    OfC,
+}
+
+impl Choice for Literals {
+    const RULE: &'static str = "a number without a type";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::OfTheirPlace => "of its place's type",
+            Self::OfC => "C's `double`, `int` or `long`",
+        }
+    }
+}
+
 const IEC: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::AtTheirType, "IEC 61131-3, 6.6.2.5.4: a result has its operands' type"),
+    mixed_numbers: follows(MixedNumbers::HoldsBoth, "IEC 61131-3, figure 11"),
     real_to_integer: follows(RealToInteger::Saturates, "IEC 61131-3, table 22: left to the implementer"),
+    halves: follows(Halves::ToEven, "IEC 61131-3, table 22: as IEC 60559 rounds"),
     integer_to_bool: follows(ToBool::NotZero, "left to the implementer; no system is known that does otherwise"),
     bits_to_bool: follows(ToBool::RightmostBit, "IEC 61131-3, table 24"),
     division_by_zero: follows(ByZero::Faults, "IEC 61131-3, table A.1: an error"),
@@ -443,25 +548,67 @@ const IEC: Rules = Rules {
     integer_text: follows(IntegerText::Digits, "left to the implementer"),
     date_as_number: follows(DateAsNumber::SecondsSince1970, "left to the implementer; as CODESYS help, \"DATE\""),
     real_of_text: follows(RealOfText::WithExponent, "left to the implementer"),
-    replace_before: follows(ReplaceBefore::Nearest, "IEC 61131-3, table 34, does not say it"),
+    text_positions: follows(TextPositions::Nearest, "IEC 61131-3, table 34, does not say it"),
+    limit_crossed: follows(LimitCrossed::Maximum, "IEC 61131-3, table 32: MIN(MAX(IN, MN), MX)"),
     sqrt_of_negative: follows(SqrtOfNegative::NotANumber, "IEC 60559, as IEC 61131-3 has REAL"),
     modulo_of_reals: follows(ModuloOfReals::Refused, "IEC 61131-3, table 29: of ANY_INT"),
     rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page says it"),
     functions: follows(Functions::OfTheStandard, "IEC 61131-3, 6.6.2.5"),
+    literals: follows(Literals::OfTheirPlace, "IEC 61131-3, 6.3.3; REAL and LREAL are left to the implementer"),
 };
 
-const CSCAPE: Rules = Rules { default_string: follows(DefaultString::Holds80, "no page says it; as CODESYS"), ..IEC };
+/// The choice of another dialect, where no page of the vendor says anything.
+const fn undocumented<T: Copy>(rule: Followed<T>) -> Followed<T> {
+    Followed { choice: rule.choice, evidence: "no page of Horner says it; as `iec`" }
+}
+
+const CSCAPE: Rules = Rules {
+    narrow_integers: undocumented(IEC.narrow_integers),
+    mixed_numbers: undocumented(IEC.mixed_numbers),
+    real_to_integer: undocumented(IEC.real_to_integer),
+    halves: undocumented(IEC.halves),
+    integer_to_bool: undocumented(IEC.integer_to_bool),
+    bits_to_bool: undocumented(IEC.bits_to_bool),
+    division_by_zero: undocumented(IEC.division_by_zero),
+    modulo_by_zero: undocumented(IEC.modulo_by_zero),
+    shr_of_signed: undocumented(IEC.shr_of_signed),
+    time_as_number: undocumented(IEC.time_as_number),
+    real_and_bits: undocumented(IEC.real_and_bits),
+    default_string: follows(DefaultString::Holds80, "no page of Horner says it; as CODESYS"),
+    integer_text: undocumented(IEC.integer_text),
+    date_as_number: undocumented(IEC.date_as_number),
+    real_of_text: undocumented(IEC.real_of_text),
+    text_positions: undocumented(IEC.text_positions),
+    limit_crossed: undocumented(IEC.limit_crossed),
+    sqrt_of_negative: undocumented(IEC.sqrt_of_negative),
+    modulo_of_reals: undocumented(IEC.modulo_of_reals),
+    rotated_constant: undocumented(IEC.rotated_constant),
+    functions: undocumented(IEC.functions),
+    literals: undocumented(IEC.literals),
+};
 
 const CODESYS: Rules = Rules {
     narrow_integers: follows(NarrowIntegers::At32Bits, "CODESYS help, \"Operands\""),
+    mixed_numbers: follows(MixedNumbers::HoldsMost, "CODESYS help, \"C0195\", \"C0197\": warnings, not errors"),
+    real_to_integer: follows(RealToInteger::LowBits, CODESYS_REALS),
+    halves: follows(Halves::AwayFromZero, "CODESYS help, \"Conversion: REAL, LREAL\": 5 to 9 after the point round up"),
     integer_to_bool: follows(ToBool::NotZero, "CODESYS help, \"Integer conversion\""),
     bits_to_bool: follows(ToBool::NotZero, "CODESYS help, \"Integer conversion\""),
+    division_by_zero: follows(ByZero::Faults, CODESYS_BY_ZERO),
+    modulo_by_zero: follows(ByZero::Faults, CODESYS_BY_ZERO),
     shr_of_signed: follows(ShrOfSigned::Sign, "CODESYS help, \"SHR\""),
     default_string: follows(DefaultString::Holds80, "CODESYS help, \"STRING\""),
     time_as_number: follows(TimeAsNumber::WholeMilliseconds, "CODESYS help, \"REAL / LREAL conversion\""),
+    limit_crossed: follows(LimitCrossed::Maximum, "CODESYS help and Beckhoff, \"LIMIT\": MIN(MAX(IN, Min), Max)"),
     rotated_constant: follows(RotatedConstant::FewestBits, "CODESYS help, \"ROL\", \"ROR\"; Beckhoff, \"ROL\""),
     ..IEC
 };
+
+const CODESYS_REALS: &str = "CODESYS help, \"Conversion: REAL, LREAL\": the first bytes are not taken into account; \
+                             Beckhoff, \"REAL/LREAL_TO_<type>\", leaves it undefined";
+
+const CODESYS_BY_ZERO: &str =
+    "Beckhoff, \"DIV\", \"MOD\": an exception, which stops the task; CODESYS help leaves it to the target";
 
 /// MATIEC's C, as gcc compiles it for x86-64: programs were compiled by it and run.
 const OPENPLC: Rules = Rules {
@@ -471,8 +618,10 @@ const OPENPLC: Rules = Rules {
     bits_to_bool: follows(ToBool::NotZero, MATIEC),
     modulo_by_zero: follows(ByZero::GivesZero, MATIEC),
     time_as_number: follows(TimeAsNumber::Seconds, MATIEC),
+    limit_crossed: follows(LimitCrossed::Minimum, MATIEC),
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),
+    literals: follows(Literals::OfC, MATIEC),
     ..IEC
 };
 
@@ -484,7 +633,8 @@ const OPENPLC4: Rules = Rules {
         NarrowIntegers::AtTheirType,
         "STruC++ 0.6.1, run: INT 30000 + 10000 into a DINT is -25536",
     ),
-    real_to_integer: follows(RealToInteger::LowBits, "STruC++ 0.6.1, run: REAL_TO_INT(40000.0) is -25536"),
+    real_to_integer: follows(RealToInteger::RoundedByC, "STruC++ 0.6.1, run: REAL_TO_INT(40000.0) is -25536"),
+    halves: follows(Halves::AwayFromZero, "STruC++ 0.6.1, run: REAL_TO_INT(2.5) is 3"),
     integer_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: INT_TO_BOOL(256) is TRUE"),
     bits_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: BYTE_TO_BOOL(16#02) is TRUE"),
     division_by_zero: follows(ByZero::Faults, "STruC++ 0.6.1, run: the process ends"),
@@ -498,10 +648,15 @@ const OPENPLC4: Rules = Rules {
 };
 
 const LOGIX: Rules = Rules {
-    narrow_integers: follows(NarrowIntegers::At32Bits, "1756-RM006, \"Data conversions\""),
+    narrow_integers: follows(NarrowIntegers::At32Bits, "1756-RM006K, p. 541: SINT and INT are made DINT"),
+    mixed_numbers: follows(MixedNumbers::Ranked, "1756-RM006K, p. 541"),
     default_string: follows(DefaultString::Holds82, "1756-RM003, \"String types\""),
-    real_to_integer: follows(RealToInteger::LowBits, "1756-RM003, \"Convert REAL to an integer\""),
-    division_by_zero: follows(ByZero::Reported, "1756-RM003N, p. 277: a minor fault of type 4, code 4"),
+    real_to_integer: follows(RealToInteger::LowBits, "1756-RM006K, p. 544: the bits that fit are stored"),
+    halves: follows(Halves::ToEven, "1756-RM006K, p. 544; 1756-RM003N, p. 653"),
+    division_by_zero: follows(
+        ByZero::Reported,
+        "1756-RM003N, p. 277: a minor fault of type 4, code 4; the quotient is on no page",
+    ),
     modulo_by_zero: follows(ByZero::Reported, "1756-RM003N, p. 281: a minor fault; A - TRN(A / B) * B"),
     sqrt_of_negative: follows(SqrtOfNegative::RootOfMagnitude, "1756-RM003, \"Square Root\""),
     modulo_of_reals: follows(ModuloOfReals::Remainder, "1756-RM003N, p. 279, \"Modulo\""),
@@ -509,14 +664,20 @@ const LOGIX: Rules = Rules {
 };
 
 const SIEMENS: Rules = Rules {
+    halves: follows(Halves::ToEven, "S7-1200 manual, \"ROUND\""),
+    division_by_zero: follows(ByZero::GivesZero, SIEMENS_BY_ZERO),
+    modulo_by_zero: follows(ByZero::GivesZero, SIEMENS_BY_ZERO),
     shr_of_signed: follows(ShrOfSigned::Sign, "S7-1200 manual, \"SHR\""),
-    integer_text: follows(IntegerText::SignAndDigits, "S7-1200 manual, table 8-33"),
+    integer_text: follows(IntegerText::SignAndDigits, "S7-1200 manual, 11/2011, p. 247, table 8-33"),
     real_and_bits: follows(RealAndBits::Bits, "S7-1200 manual, \"CONV\""),
     date_as_number: follows(DateAsNumber::DaysSince1990, SIEMENS_DATES),
-    real_of_text: follows(RealOfText::FixedPoint, "S7-1200 manual, table 8-33"),
-    replace_before: follows(ReplaceBefore::Empty, "S7-1200 manual, 03/2014, table 8-66"),
+    real_of_text: follows(RealOfText::FixedPoint, "S7-1200 manual, 11/2011, p. 247, table 8-33"),
+    text_positions: follows(TextPositions::Empty, "S7-1200 manual, 03/2014, tables 8-57, 8-60, 8-63 and 8-66"),
+    limit_crossed: follows(LimitCrossed::Value, "S7-1200 manual, \"LIMIT\", ENO status"),
     ..IEC
 };
+
+const SIEMENS_BY_ZERO: &str = "S7-1200 manual, \"DIV\", \"MOD\", ENO status: 0 is returned";
 
 impl Dialect {
     pub const fn rules(self) -> &'static Rules {
@@ -543,7 +704,9 @@ pub struct Row {
 pub fn table() -> Vec<Row> {
     vec![
         row(|it| &it.narrow_integers),
+        row(|it| &it.mixed_numbers),
         row(|it| &it.real_to_integer),
+        row(|it| &it.halves),
         row_of("integer to BOOL", |it| &it.integer_to_bool, ToBool::words),
         row_of("bit string to BOOL", |it| &it.bits_to_bool, ToBool::words),
         row_of("division by zero", |it| &it.division_by_zero, ByZero::words),
@@ -555,11 +718,13 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.integer_text),
         row(|it| &it.date_as_number),
         row(|it| &it.real_of_text),
-        row(|it| &it.replace_before),
+        row(|it| &it.text_positions),
+        row(|it| &it.limit_crossed),
         row(|it| &it.sqrt_of_negative),
         row(|it| &it.modulo_of_reals),
         row(|it| &it.rotated_constant),
         row(|it| &it.functions),
+        row(|it| &it.literals),
     ]
 }
 
@@ -583,25 +748,11 @@ pub struct NotFollowed {
     /// What the system does.
     pub what: &'static str,
     pub evidence: &'static str,
+    /// What a program has to have for the rule to matter.
     pub uses: Use,
 }
 
-/// What a program has to have for a rule to matter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Use {
-    Type(Elementary),
-}
-
-impl Use {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Type(it) => it.name(),
-        }
-    }
-}
-
-/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect, and a real is
-/// rounded to the even one of two integers.
+/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
 pub const NOT_FOLLOWED: &[NotFollowed] = &[
     not_followed(
         Dialect::Codesys,
@@ -623,12 +774,78 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
         SIEMENS_DATES,
     ),
-    not_followed(Dialect::Openplc4, Elementary::Real, HALVES, "STruC++ 0.6.1, run"),
-    not_followed(Dialect::Openplc4, Elementary::Lreal, HALVES, "STruC++ 0.6.1, run"),
+    of_matiec(Use::Type(Elementary::Time), PARTS),
+    of_matiec(Use::Type(Elementary::Dt), PARTS),
+    of_matiec(Use::Type(Elementary::Tod), "it may be negative, or longer than a day: `TOD#00:00:00 - T#1s`"),
+    of_matiec(Use::Type(Elementary::Date), "it may have a time of day: `DINT_TO_DATE(1)`"),
+    of_matiec(Use::Function("DELETE"), BEFORE),
+    of_matiec(Use::Function("REPLACE"), BEFORE),
+    of_matiec(Use::Function("SIN"), LAST_DIGIT),
+    of_matiec(Use::Function("COS"), LAST_DIGIT),
+    of_matiec(Use::Function("TAN"), LAST_DIGIT),
+    of_matiec(Use::Function("ASIN"), LAST_DIGIT),
+    of_matiec(Use::Function("ACOS"), LAST_DIGIT),
+    of_matiec(Use::Function("ATAN"), LAST_DIGIT),
+    of_matiec(Use::Function("EXP"), LAST_DIGIT),
+    of_matiec(Use::Function("LN"), LAST_DIGIT),
+    of_matiec(Use::Function("LOG"), LAST_DIGIT),
+    of_matiec(Use::Operator("**", Class::Num), LAST_DIGIT),
+    of_strucpp(Use::Function("LIMIT"), "MN where IN is less than it, also where MN is above MX: `LIMIT(7, 1, 1)` is 7"),
+    of_strucpp(Use::Function("MUX"), "the last input, where K is below 0 or past the inputs"),
+    of_strucpp(Use::Function("SIN"), IN_DOUBLE),
+    of_strucpp(Use::Function("COS"), IN_DOUBLE),
+    of_strucpp(Use::Function("TAN"), IN_DOUBLE),
+    of_strucpp(Use::Function("ASIN"), IN_DOUBLE),
+    of_strucpp(Use::Function("ACOS"), IN_DOUBLE),
+    of_strucpp(Use::Function("ATAN"), IN_DOUBLE),
+    of_strucpp(Use::Function("EXP"), IN_DOUBLE),
+    of_strucpp(Use::Function("LN"), IN_DOUBLE),
+    of_strucpp(Use::Function("LOG"), IN_DOUBLE),
+    of_strucpp(Use::Function("SQRT"), IN_DOUBLE),
+    of_strucpp(Use::Operator("**", Class::Num), IN_DOUBLE),
+    of_strucpp(Use::Literal(Class::Real), "a `double` of C++: `x * 0.1` is computed as an LREAL"),
+    of_strucpp(Use::Literal(Class::Int), "an `int` of C++: `SINT#127 + 1 > 100` is TRUE"),
+    of_strucpp(Use::Operator("NEG", Class::Signed), "computed in 32 bits: `-SINT#-128` is 128 until it is stored"),
+    of_strucpp(Use::Function("MAX"), "`a > b`, else b: so MAX(NaN, 1.0) is 1.0"),
+    of_strucpp(Use::Function("MIN"), "`a < b`, else b: so MIN(1.0, NaN) is NaN"),
+    of_strucpp(Use::Function("LEFT"), "a negative L is all of the text"),
+    of_strucpp(Use::Function("RIGHT"), "a negative L is all of the text"),
+    of_strucpp(Use::Function("MID"), "nothing where P is below 1"),
+    of_strucpp(Use::Function("INSERT"), "before the character at P: `INSERT('ABC', 'X', 1)` is 'XABC'"),
+    of_strucpp(Use::Function("DELETE"), "all of the text where P is below 1 or past its end"),
+    of_strucpp(Use::Function("REPLACE"), "all of the text where P is below 1 or past its end"),
+    of_strucpp(Use::Conversion(Class::Real, Class::Duration), "the fraction of a millisecond is cut"),
+    of_strucpp(
+        Use::Conversion(Class::Real, Class::Bit),
+        "rounded before it is compared with 0: REAL_TO_BOOL(0.4) is FALSE",
+    ),
+    of_strucpp(Use::Conversion(Class::String, Class::Elementary), TEXTS),
+    of_strucpp(Use::Conversion(Class::Elementary, Class::String), TEXTS),
+    of_strucpp(Use::Conversion(Class::Elementary, Class::Date), DATES),
+    of_strucpp(Use::Conversion(Class::Date, Class::Elementary), DATES),
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
 
-const HALVES: &str = "a half is rounded away from zero: `REAL_TO_INT(2.5)` is 3";
+const PARTS: &str = "seconds and nanoseconds are kept apart: `T#500ms + T#500ms = T#1s` is FALSE, and a literal may lack a \
+                     nanosecond: `T#1ms` is 999999 ns on x86-64";
+
+const BEFORE: &str = "the process ends where P is 0";
+
+const LAST_DIGIT: &str = "the C library's: the last digit of an LREAL may be another";
+
+const IN_DOUBLE: &str = "computed as an LREAL, by the C library: the last digit may be another";
+
+const TEXTS: &str = "as C++ writes and reads it: REAL_TO_STRING(-1.0E20) is '-1e+20', STRING_TO_INT('8#17') is 8";
+
+const DATES: &str = "a DATE counts days, a TOD or DT nanoseconds or milliseconds: DATE_TO_DINT(D#1999-03-01) is 10651";
+
+const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
+    NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses }
+}
+
+const fn of_strucpp(uses: Use, what: &'static str) -> NotFollowed {
+    NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses }
+}
 
 const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
 
@@ -637,3 +854,69 @@ const SIEMENS_DATES: &str = "S7-1200 manual V4.2, table 5-32";
 const fn not_followed(dialect: Dialect, ty: Elementary, what: &'static str, evidence: &'static str) -> NotFollowed {
     NotFollowed { dialect, what, evidence, uses: Use::Type(ty) }
 }
+
+/// An edge of a function, of which this is what every program does, and what vendors say of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    pub dialect: Dialect,
+    pub what: &'static str,
+    pub here: &'static str,
+    pub documented: &'static str,
+}
+
+const fn edge(dialect: Dialect, what: &'static str, here: &'static str, documented: &'static str) -> Edge {
+    Edge { dialect, what, here, documented }
+}
+
+/// Where a vendor leaves a value open, or where no page was found: what is done here is a choice.
+pub const EDGES: &[Edge] = &[
+    edge(
+        Dialect::Codesys,
+        "`MOD` of a negative number",
+        "the dividend's sign, as processors divide",
+        "CODESYS help, \"MOD\": \"a non-negative integer\", without an example; Beckhoff, \"MOD\": the integer remainder",
+    ),
+    edge(
+        Dialect::Codesys,
+        "`SHL`, `SHR` by the type's bits or more",
+        "zeros come in, the sign in `SHR` of a signed one",
+        "CODESYS help and Beckhoff, \"SHL\", \"SHR\": zeros, or `N MOD` the register's bits, as the target has it",
+    ),
+    edge(
+        Dialect::Codesys,
+        "`TRUNC`, `TRUNC_INT` beyond the type",
+        "the low bits",
+        "CODESYS help, \"TRUNC\", \"TRUNC_INT\": undefined, depends on the platform",
+    ),
+    edge(
+        Dialect::Codesys,
+        "`MID`, `INSERT`, `DELETE`, `REPLACE` with a position or count out of range",
+        "acts as the nearest one",
+        "CODESYS, library Standard: nothing",
+    ),
+    edge(
+        Dialect::Logix,
+        "the quotient of an integer and 0",
+        "the dividend",
+        "1756-RM003N, pp. 277 and 281: only the minor fault",
+    ),
+    edge(
+        Dialect::Logix,
+        "`MID`, `INSERT`, `DELETE` with an invalid Start or Quantity",
+        "acts as the nearest one",
+        "Rockwell, \"String Delete (DELETE)\": a minor fault of type 4, code 56; the destination is on no page",
+    ),
+    edge(
+        Dialect::Logix,
+        "an integer with more digits than the real beside it",
+        "the nearest real, of two the even one",
+        "1756-RM006K, p. 543: so; p. 546: the lower bits are truncated",
+    ),
+    edge(
+        Dialect::Siemens,
+        "a conversion to an integer type that does not hold the number",
+        "of a real the nearest value, of an integer the low bits",
+        "no page read says the value; ENO is FALSE",
+    ),
+    edge(Dialect::Cscape, "all of them", "as `iec`", "no page of Horner was found"),
+];

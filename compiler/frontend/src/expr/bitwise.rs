@@ -91,7 +91,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// The type that bits of these sides count as, where both are integers of a dialect that has none but their bits: that of
-    /// more bits.
+    /// more bits, of as many the unsigned one (1756-RM006K, p. 541).
     fn own_of_integers(&self, sides: &Sides) -> Option<Elementary> {
         if !self.decl.dialect(sides.span).has_bits_of_integers() {
             return None;
@@ -105,7 +105,7 @@ impl<'s> Checker<'_, 's> {
             _ => None,
         };
         let both = [own(&sides.a)?, own(&sides.b)?];
-        both.into_iter().max_by_key(|it| (it.repr().size(), !it.repr().is_unsigned()))
+        both.into_iter().max_by_key(|it| (it.repr().size(), it.repr().is_unsigned()))
     }
 
     /// The bits of an integer in a type of as many or more: those that it has not are 0.
@@ -113,7 +113,7 @@ impl<'s> Checker<'_, 's> {
         let to = Type::Elementary(ty);
         if let Operand::Integer(value) = operand {
             let value = pattern(value, ty).unwrap_or(value);
-            return self.coerce(Operand::Integer(value), to, span);
+            return self.coerce(Operand::Integer(zero_filled(value, ty)), to, span);
         }
         let value = self.materialise(operand, Some(to), span)?;
         let Type::Elementary(from) = value.ty else { return None };
@@ -127,6 +127,16 @@ impl<'s> Checker<'_, 's> {
         let value = if is_wider { self.convert(Conversion::Value, Type::Elementary(unsigned), value) } else { value };
         Some(self.convert(Conversion::Value, to, value))
     }
+}
+
+/// An immediate value is a DINT, and beside 64 bits it has zeros above, as every operand of an instruction on bits
+/// (1756-RM006K, pp. 541 and 545).
+fn zero_filled(value: i128, ty: Elementary) -> i128 {
+    let is_dint = Elementary::Dint.repr().integer(value).is_some();
+    let wide = ty.repr().size() == 8;
+    let value = if wide && is_dint && value < 0 { value + (1 << 32) } else { value };
+    let is_negative = value < 0 && ty.repr().is_unsigned();
+    if is_negative { value + (1 << (ty.repr().size() * 8)) } else { value }
 }
 
 /// At how many bits those of an integer are computed: 32 at least.

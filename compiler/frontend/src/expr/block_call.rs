@@ -7,10 +7,11 @@ use super::operand::Operand;
 use super::order::Held;
 use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
+use crate::dialect::Dialect;
 use crate::types::signature::{Formal, Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
-use staunch_runtime::Direction;
+use staunch_runtime::{Direction, Family};
 
 /// What an ACTION of the POU itself has for an in-out that its call does not give.
 enum OwnInOut {
@@ -28,6 +29,7 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         span: Span,
     ) -> Option<()> {
+        let callee = self.counter_of_instruction(callee).unwrap_or(callee);
         let found = self.place(callee)?;
         self.note_called(&found.place, arguments, callee);
         match found.place.ty {
@@ -57,6 +59,29 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// `c` of `c.CTU(…)`, where `c` is a CTU of S7: a counter's data is called as what the instruction is. Where the program
+    /// moves from there, what is called otherwise is a lint.
+    fn counter_of_instruction<'a>(&mut self, callee: &'a ast::Expr<'s>) -> Option<&'a ast::Expr<'s>> {
+        let ast::ExprKind::Member(counter, name) = &callee.kind else { return None };
+        let Some(Type::Block(id)) = self.static_type(counter) else { return None };
+        let info = id.info();
+        let instruction = info.name.split('_').next().unwrap_or_default();
+        if !info.is_counter() || !name.text.eq_ignore_ascii_case(instruction) {
+            return None;
+        }
+        if info.family == Family::S7 {
+            return Some(counter.as_ref());
+        }
+        (self.decl.log.options.moved_from? == Dialect::Siemens).then_some(())?;
+        let (text, system) = (self.decl.log.sources.text(counter.span), info.family.name());
+        let message = format!("`{text}.{}(…)` is `{text}(…)` in {system}", name.text);
+        let member = Span { start: counter.span.end, ..name.span };
+        let lint =
+            Diagnostic::new(Code::W0609, name.span, message).label("S7 calls a counter's data by the instruction");
+        self.report(lint.help("call the instance itself").fix(member, ""));
+        Some(counter.as_ref())
     }
 
     /// `m.Val()`: a PROPERTY is read without parentheses.

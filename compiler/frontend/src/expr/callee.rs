@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::unresolved::{block_of_another_dialect, no_such_block};
 use super::{logix_operands, test_words};
-use crate::dialect::missing;
+use crate::dialect::{Dialect, missing};
 use crate::inherit::is_super;
 use crate::names::{Entry, Found, Meaning, Sense, functions, is_instruction};
 use crate::prelude;
@@ -35,6 +35,12 @@ const UNITS_OF_TIME: [(&str, &str); 4] = [
     ("TIME_TO_US", "write `LTIME_TO_LINT(TIME_TO_LTIME(x)) / 1000`"),
     ("TIME_TO_NS", "write `LTIME_TO_LINT(TIME_TO_LTIME(x))`"),
 ];
+
+/// What S7 has in place of a counter of S5.
+fn s5_counter(name: &str) -> Option<&'static str> {
+    let counters = [("S_CU", "CTU"), ("S_CD", "CTD"), ("S_CUD", "CTUD")];
+    counters.into_iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
+}
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
@@ -223,6 +229,23 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
+    /// The counters of S5, which S7-300 and S7-400 have besides: functions that work on a counter by its number.
+    fn report_s5_counter(&mut self, name: ast::Name<'s>, counter: &str) {
+        let pins = match counter {
+            "CTU" => "CU := …, R := …, PV := …",
+            "CTD" => "CD := …, LD := …, PV := …",
+            _ => "CU := …, CD := …, R := …, LD := …, PV := …",
+        };
+        let text = name.text.to_ascii_uppercase();
+        self.report(
+            Diagnostic::new(Code::E0904, name.span, format!("`{text}` is a counter of S5, which is not supported"))
+                .label("it counts from 0 to 999, in BCD, in a counter that has a number")
+                .help(format!(
+                    "declare `c : {counter};`, and call `c({pins})`: it counts in INT, also past 999 and below 0"
+                )),
+        );
+    }
+
     pub(crate) fn report_unknown_function(&mut self, name: ast::Name<'s>) {
         if self.decl.bare_block(name).is_some() {
             self.report_type_called(name, ast::PouKind::FunctionBlock);
@@ -258,6 +281,10 @@ impl<'s> Checker<'_, 's> {
                     .label("this file's dialect has none of that name")
                     .help(dialect.how_to_choose()),
             );
+            return;
+        }
+        if let Some(counter) = s5_counter(name.text).filter(|_| self.decl.dialect(name.span) == Dialect::Siemens) {
+            self.report_s5_counter(name, counter);
             return;
         }
         if not_yet(name.text, self.decl.dialect(name.span)) {
@@ -307,7 +334,7 @@ fn typed_function(name: &str) -> Option<String> {
 }
 
 /// Functions of the standard's tables, and of CODESYS, that are known to be missing.
-fn not_yet(name: &str, dialect: dialect::Dialect) -> bool {
+fn not_yet(name: &str, dialect: Dialect) -> bool {
     if missing::is_operator(dialect, name) {
         return true;
     }

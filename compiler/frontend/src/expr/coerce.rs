@@ -126,7 +126,7 @@ impl<'s> Checker<'_, 's> {
             (_, Type::Reference(id)) => self.coerce_reference(expr, id, span),
             (Type::Reference(_), Type::Elementary(into)) => self.address_as(expr, into, span),
             (Type::Elementary(from), Type::Elementary(into)) => {
-                self.may_become(from, into, span).then(|| self.number_as(expr, into, span))
+                self.may_become(from, into, span).then(|| self.number_as(expr, into, span))?
             }
             (Type::String(from), Type::String(into)) if from.wide == into.wide => {
                 self.warn_of_cut(&expr, into, span);

@@ -1,7 +1,7 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
-use crate::dialect::rules::ToBool;
+use crate::dialect::rules::{Halves, ToBool};
 use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Chars, Conversion, Elementary, Expr, Op, Type, Value};
@@ -70,6 +70,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn between(&mut self, value: Expr, from: Elementary, to: Elementary, span: Span) -> Option<Expr> {
         let target = Type::Elementary(to);
         let rules = self.decl.dialect(span).rules();
+        self.note_conversion(value.ty, target, span);
         if from.is_char() || to.is_char() {
             return self.character_and_number(value, from, to, span);
         }
@@ -88,7 +89,12 @@ impl<'s> Checker<'_, 's> {
                 let lint = self.apply(op, value.ty, vec![value], Type::LINT, span)?;
                 Some(self.convert(Conversion::Value, target, lint))
             }
-            (None, None) => Some(self.number_as(value, to, span)),
+            (None, None) if from.is_real() && !to.is_real() && rules.rounds_by_c() => {
+                let whole = self.apply(Op::AwayFromZero, value.ty, vec![value], Type::LREAL, span)?;
+                let lint = self.apply(truncated_by(to), Type::LREAL, vec![whole], Type::LINT, span)?;
+                Some(self.convert(Conversion::Value, target, lint))
+            }
+            (None, None) => self.number_as(value, to, span),
             (Some(_), None) if rules.time_is_seconds() => self.seconds(value, to, span),
             (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
             (Some(unit), None) => {
@@ -101,7 +107,7 @@ impl<'s> Checker<'_, 's> {
             (None, Some(unit)) => {
                 let (unit, since) = self.counts_from(to, unit, span);
                 let real = from.is_real() && !self.decl.dialect(span).rules().counts_whole_units();
-                let wide = self.convert(Conversion::Value, if real { Type::LREAL } else { Type::LINT }, value);
+                let wide = self.number_as(value, if real { Elementary::Lreal } else { Elementary::Lint }, span)?;
                 let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
                 let count = self.since_epoch(Op::Add, count, since, span)?;
@@ -124,15 +130,19 @@ impl<'s> Checker<'_, 's> {
         self.apply(op, Type::LINT, vec![value, by], Type::LINT, span)
     }
 
-    /// A number as one of another type. Of a real that an integer type does not hold, the dialect says what it becomes.
-    pub(super) fn number_as(&mut self, value: Expr, to: Elementary, span: Span) -> Expr {
+    /// A number as one of another type. A real becomes an integer as the dialect rounds halves, and cuts what the type does
+    /// not hold.
+    pub(super) fn number_as(&mut self, value: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        self.note_conversion(value.ty, Type::Elementary(to), span);
         let is_real = value.ty.elementary().is_some_and(Elementary::is_real);
-        let cut = is_real && to.is_integral() && to != Elementary::Bool;
-        let value = match cut && self.decl.dialect(span).rules().keeps_low_bits() {
-            true => self.convert(Conversion::Value, Type::LINT, value),
-            false => value,
+        let rules = self.decl.dialect(span).rules();
+        let is_cut = is_real && to.is_integral() && to != Elementary::Bool && rules.keeps_low_bits();
+        let value = match (is_cut, rules.halves.choice) {
+            (false, _) => value,
+            (true, Halves::ToEven) => self.apply(Op::BitsOfNearest, value.ty, vec![value], Type::LINT, span)?,
+            (true, Halves::AwayFromZero) => self.apply(Op::BitsOfHalfAway, value.ty, vec![value], Type::LINT, span)?,
         };
-        self.convert(Conversion::Value, Type::Elementary(to), value)
+        Some(self.convert(Conversion::Value, Type::Elementary(to), value))
     }
 
     /// A TIME, or a point in time, as its seconds: whole ones, or with a fraction as a real. A BOOL is whether it is not 0.
@@ -213,6 +223,12 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let wide = self.convert(Conversion::Value, Type::LINT, value);
+        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let op = match op {
+            Op::ToBcd if matiec => Op::BcdOf,
+            Op::FromBcd if matiec => Op::OfBcdOrZero,
+            op => op,
+        };
         let made = self.apply(op, Type::LINT, vec![wide], Type::LINT, span)?;
         Some(self.convert(Conversion::Value, Type::Elementary(to), made))
     }
@@ -247,10 +263,16 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        self.note_conversion(from, Type::Elementary(to), name.span);
         let low_bits = self.decl.dialect(name.span).rules().keeps_low_bits();
+        let rules = self.decl.dialect(name.span).rules();
+        if how == Rounding::ToZero && (rules.has_functions_of_matiec() || rules.rounds_by_c()) {
+            let lint = self.apply(truncated_by(to), from, vec![value], Type::LINT, name.span)?;
+            return Some(self.convert(Conversion::Value, Type::Elementary(to), lint));
+        }
         let op = match how {
             Rounding::ToZero if low_bits => {
-                let whole = self.convert(Conversion::Truncate, Type::LINT, value);
+                let whole = self.apply(Op::BitsOfWhole, from, vec![value], Type::LINT, span)?;
                 return Some(self.convert(Conversion::Value, Type::Elementary(to), whole));
             }
             Rounding::ToZero => return Some(self.convert(Conversion::Truncate, Type::Elementary(to), value)),
@@ -259,7 +281,16 @@ impl<'s> Checker<'_, 's> {
             Rounding::Down => Op::Floor,
         };
         let whole = self.apply(op, from, vec![value], from, span)?;
-        Some(self.number_as(whole, to, span))
+        self.number_as(whole, to, span)
+    }
+}
+
+/// By which conversion x86-64 cuts a real to a type.
+fn truncated_by(to: Elementary) -> Op {
+    match (to.repr().size(), to.repr().is_unsigned()) {
+        (8, true) => Op::TruncUlint,
+        (8, false) | (4, true) => Op::TruncLint,
+        _ => Op::TruncDint,
     }
 }
 

@@ -202,6 +202,11 @@ impl<'s> Checker<'_, 's> {
             return self.negative_literal(**prefix, &literal.value, span).map(Operand::Typed);
         }
         let operand = self.operand(inner, expected)?;
+        match op {
+            UnaryOp::Plus => {}
+            UnaryOp::Neg => self.note_operator("NEG", &[&operand], span),
+            UnaryOp::Not => self.note_operator("NOT", &[&operand], span),
+        }
         match (op, operand) {
             (UnaryOp::Plus, operand) => Some(operand),
             (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),

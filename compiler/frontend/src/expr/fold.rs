@@ -30,6 +30,7 @@ impl Checker<'_, '_> {
 
     /// An operation on constants as its value: what it gives at run time.
     pub(crate) fn evaluated(&mut self, expr: Expr, span: Span) -> Option<Expr> {
+        self.note_types(&expr);
         match staunch_ir::fold(&expr) {
             Some(Ok(value)) => Some(constant(expr, value)),
             Some(Err(_)) if self.may_not_run => Some(expr),
@@ -83,6 +84,7 @@ impl Checker<'_, '_> {
             other => other,
         };
         let expr = Expr::convert(how, ty, value, at);
+        self.note_types(&expr);
         match staunch_ir::fold(&expr) {
             Some(Ok(value)) => constant(expr, value),
             Some(Err(_)) | None => expr,

@@ -10,6 +10,7 @@ use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::LiteralValue;
 use staunch_ir::{Chars, Elementary, Expr, ExprKind, Op, StringType, Type, Value};
+use staunch_runtime::literal::lower_overflow;
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn literal(
@@ -36,7 +37,12 @@ impl<'s> Checker<'_, 's> {
                 Some(Operand::Integer(i128::from(*value)))
             }
             LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
-            LiteralValue::Time { ty, nanoseconds } => typed(*ty, Value::I64(*nanoseconds)),
+            LiteralValue::Time { ty, nanoseconds } => {
+                if ty.is_duration() {
+                    self.lower_units(*ty, *nanoseconds, span)?;
+                }
+                typed(*ty, Value::I64(*nanoseconds))
+            }
             LiteralValue::String(chars) => Some(self.string_literal(chars, span)),
             LiteralValue::Error => None,
             LiteralValue::Enumerator(name) => {
@@ -44,6 +50,26 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// Reports `T#5m68s`: only the first unit may overflow.
+    fn lower_units(&mut self, ty: Elementary, nanoseconds: i64, span: Span) -> Option<()> {
+        let units = self.decl.log.sources.text(span).split_once('#')?.1;
+        let Some(unit) = lower_overflow(units).map(|(start, end)| units[start..end].to_owned()) else {
+            return Some(());
+        };
+        let mut meant = String::new();
+        staunch_runtime::format::time(&mut meant, ty, nanoseconds).ok()?;
+        let is_taken = self.decl.dialect(span).takes_lower_units_that_overflow();
+        let code = if is_taken { Code::W0525 } else { Code::E0214 };
+        let message = format!("`{unit}` is as much as the next longer unit, or more");
+        self.report(
+            Diagnostic::new(code, span, message)
+                .label("only the first unit of a TIME may overflow")
+                .help(format!("write `{meant}`"))
+                .fix(span, meant),
+        );
+        is_taken.then_some(())
     }
 
     /// Reports `10#15` in dialects that have no numbers of this base.
@@ -288,7 +314,9 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Option<Operand>> {
         if let (Operand::Integer(a), Operand::Integer(b)) = (a, b) {
-            return self.fold_integers(op, *a, *b, span);
+            let folded = self.fold_integers(op, *a, *b, span);
+            let as_c = self.decl.dialect(span).rules().has_literals_of_c();
+            return if as_c { folded.map(|it| self.wrapped_as_c(it, [*a, *b], span)) } else { folded };
         }
         let op = match op {
             ast::BinaryOp::Add => Op::Add,
@@ -298,6 +326,28 @@ impl<'s> Checker<'_, 's> {
             _ => return None,
         };
         Some(Some(Operand::Real { number: Real::Apply(op, vec![number(a)?, number(b)?]) }))
+    }
+
+    /// An integer without a type is an `int` in C, or a `long` where an `int` does not hold it; of both sides the longer
+    /// one counts. One with a base may be an `unsigned` as well.
+    fn wrapped_as_c(&self, folded: Option<Operand>, sides: [i128; 2], span: Span) -> Option<Operand> {
+        let Some(Operand::Integer(value)) = folded else { return folded };
+        let low = |bits: u32| {
+            let low = value & ((1 << bits) - 1);
+            if low >> (bits - 1) == 0 { low } else { low - (1 << bits) }
+        };
+        let has_base = self.decl.log.sources.text(span).contains('#');
+        let [int, unsigned, long] = [
+            sides.iter().all(|it| it.unsigned_abs() < 1 << 31),
+            has_base && sides.iter().all(|it| u32::try_from(*it).is_ok()),
+            sides.iter().all(|it| i64::try_from(*it).is_ok()),
+        ];
+        Some(Operand::Integer(match (int, unsigned, long) {
+            (true, _, _) => low(32),
+            (false, true, _) => value & 0xFFFF_FFFF,
+            (false, false, true) => low(64),
+            (false, false, false) => value,
+        }))
     }
 
     fn fold_integers(&mut self, op: ast::BinaryOp, a: i128, b: i128, span: Span) -> Option<Option<Operand>> {
@@ -317,7 +367,24 @@ impl<'s> Checker<'_, 's> {
         if value.is_none() {
             self.error(Code::E0202, span, "the value of this expression fits no type");
         }
-        Some(value.map(Operand::Integer))
+        Some(value.map(|it| Operand::Integer(self.as_immediate([a, b], it, span))))
+    }
+
+    /// What two immediate values give: where they are DINTs, the low bits of one, in Logix (1756-RM006K, p. 545).
+    fn as_immediate(&mut self, sides: [i128; 2], value: i128, span: Span) -> i128 {
+        let repr = Elementary::Dint.repr();
+        let are_dints = sides.iter().all(|it| repr.integer(*it).is_some());
+        if !are_dints || repr.integer(value).is_some() || !self.decl.dialect(span).rules().ranks_numbers() {
+            return value;
+        }
+        // The low 32 bits, with their sign.
+        let low = (value + (1 << 31)).rem_euclid(1 << 32) - (1 << 31);
+        self.report(
+            Diagnostic::new(Code::W0524, span, format!("{value} is more than a DINT holds"))
+                .label(format!("immediate values are DINTs in Logix: this is {low}"))
+                .help(format!("write the number: `{value}`")),
+        );
+        low
     }
 }
 

@@ -2,13 +2,13 @@
 //! numbers of the traps in `docs/compare.md`.
 
 use super::checker::Checker;
-use super::unresolved::other_dialects_pin;
+use super::unresolved::{other_dialects_pin, pin_of_data};
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{BlockId, Const, Elementary, Expr, Op, Type, Value};
-use staunch_runtime::{Direction, PinRole};
+use staunch_runtime::{Direction, Family, PinRole};
 
 /// A call of a counter that is a variable of its own.
 struct CounterCall<'a, 's> {
@@ -58,13 +58,18 @@ fn counts(ty: Type) -> bool {
 }
 
 impl<'s> Checker<'_, 's> {
-    /// The name that this system has for a pin, where the program moves here from another.
+    /// The name that this system has for a pin that some of its controllers call otherwise, or that another system does
+    /// from which the program moves here.
     pub(crate) fn own_pin_name(&mut self, block: BlockId, name: ast::Name<'s>) -> ast::Name<'s> {
         let info = block.info();
-        if self.decl.log.options.moved_from.is_none() || info.pin(name.text).is_some() {
-            return name;
+        if let Some(other) = info.facts.other_pins.iter().find(|it| it.name.eq_ignore_ascii_case(name.text)) {
+            return ast::Name { text: other.pin, span: name.span };
         }
-        let Some(own) = other_dialects_pin(block, name.text) else { return name };
+        let Some(from) = self.decl.log.options.moved_from.filter(|_| info.pin(name.text).is_none()) else {
+            return name;
+        };
+        let own = other_dialects_pin(block, name.text).or_else(|| pin_of_data(from, block, name.text));
+        let Some(own) = own else { return name };
         let system = info.family.name();
         let message = format!("the pin `{}` is called `{own}` in {system}", name.text);
         let lint = Diagnostic::new(Code::W0609, name.span, message).label("a name that the move changes");
@@ -79,7 +84,9 @@ impl<'s> Checker<'_, 's> {
         block: BlockId,
         arguments: &[ast::Argument<'s>],
     ) -> Option<Vec<ast::Argument<'s>>> {
-        self.decl.log.options.moved_from?;
+        if self.decl.log.options.moved_from.is_none() && block.info().facts.other_pins.is_empty() {
+            return None;
+        }
         let mut arguments = arguments.to_vec();
         for argument in &mut arguments {
             match &mut argument.kind {
@@ -146,6 +153,7 @@ impl<'s> Checker<'_, 's> {
         for call in &calls {
             self.reset_by_itself(call, &read);
             self.counted_as_it_falls(call);
+            self.loaded_while_it_moves(call);
         }
     }
 
@@ -292,6 +300,33 @@ impl<'s> Checker<'_, 's> {
                 .help(format!(
                     "give `NOT {negated}` to count when it rises; where your Editor counts the rise, say \
                      `openplc4-cd-edge = \"rising\"` in staunch.toml"
+                )),
+        );
+    }
+}
+
+impl<'s> Checker<'_, 's> {
+    /// Trap 20: `c(LD := fill, PV := target)` of S7, where `target` may move while `fill` is TRUE. An R_TRIG's Q is TRUE in
+    /// one call, where both readings are one.
+    fn loaded_while_it_moves(&mut self, call: &CounterCall<'_, 's>) {
+        let info = call.block.info();
+        if info.family != Family::S7 || info.facts.loads_on_edges {
+            return;
+        }
+        let Some(((load, at), (preset, _))) = call.input(PinRole::Load).zip(call.input(PinRole::Preset)) else {
+            return;
+        };
+        if matches!(bare(load).kind, Ast::Literal(_)) || member_of(load, "Q").is_some() || self.is_constant(preset) {
+            return;
+        }
+        let [given, value] = [load, preset].map(|it| self.decl.log.sources.text(bare(it).span));
+        self.report(
+            Diagnostic::new(Code::W0613, at, format!("`{}` may be loaded again while LD is TRUE", call.name))
+                .label(format!("here CV follows `{value}` for as long as this is TRUE"))
+                .note("Siemens' pages say that PV is loaded while LD is 1, and that it is loaded when LD changes to 1")
+                .help(format!(
+                    "load it in one call, as both say: `e(CLK := {given}); {}(LD := e.Q, …)`, with `e : R_TRIG`",
+                    call.name
                 )),
         );
     }

@@ -186,6 +186,10 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0202, span, format!("this number is too large for {}", ty.name()));
             return None;
         }
+        if ty == Elementary::Real && self.decl.dialect(span).rules().has_literals_of_c() {
+            let double = number.value(Elementary::Lreal.repr())?;
+            return Some(staunch_runtime::ops::convert_value(double, ty.repr()));
+        }
         number.value(ty.repr())
     }
 }
@@ -215,8 +219,9 @@ fn integer_type(value: i128, expected: Option<Type>) -> Elementary {
 
 /// A value of the type that its operands give it, whatever it was computed at.
 pub(crate) fn computed(value: Expr, ty: Type) -> Operand {
+    let may_be_wider = |it: Elementary| is_narrow(it) || it == Elementary::Real;
     match ty {
-        Type::Elementary(ty) if value.ty != Type::Elementary(ty) && is_narrow(ty) => Operand::Promoted(value, ty),
+        Type::Elementary(ty) if value.ty != Type::Elementary(ty) && may_be_wider(ty) => Operand::Promoted(value, ty),
         _ => Operand::Typed(value),
     }
 }

@@ -3,7 +3,6 @@
 use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
-use crate::dialect::rules::ByZero;
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
@@ -52,6 +51,8 @@ impl<'s> Checker<'_, 's> {
 
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
+        self.note_operator(sides.op.text(), &[&sides.a, &sides.b], sides.op_span);
+        self.note_literals([&sides.a, &sides.b], sides.op_span);
         if sides.a.is_reference() || sides.b.is_reference() {
             return self.reference_operation(sides);
         }
@@ -86,7 +87,7 @@ impl<'s> Checker<'_, 's> {
             }
             BinaryOp::Power => {
                 let sides = self.counted(sides);
-                self.power(sides).map(Operand::Typed)
+                self.power(sides)
             }
             BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod => {
                 let sides = self.counted(sides);
@@ -118,7 +119,10 @@ impl<'s> Checker<'_, 's> {
             }
         };
         let rules = dialect.rules();
-        let ty = if rules.promotes_integers() { promoted(&sides, own, rules.promotes_as_c()) } else { own };
+        let ty = match rules.promotes_integers() {
+            true => promoted(&sides, own, rules.promotes_as_c(), rules.ranks_numbers()),
+            false => own,
+        };
         let a = self.side(sides.a, ty, sides.left)?;
         let b = self.side(sides.b, ty, sides.right)?;
         Some(Meeting { ty: Type::Elementary(ty), own: Type::Elementary(own), a, b })
@@ -128,7 +132,12 @@ impl<'s> Checker<'_, 's> {
         match operand {
             // The meeting of a bit string and an integer is decided; the reprs agree in size or widen.
             Operand::Typed(expr) | Operand::Promoted(expr, _) => {
+                self.note_conversion(expr.ty, Type::Elementary(ty), span);
                 Some(self.convert(Conversion::Value, Type::Elementary(ty), expr))
+            }
+            Operand::Integer(value) if self.decl.dialect(span).rules().ranks_numbers() => {
+                let value = immediate(value, ty).unwrap_or(value);
+                self.coerce(Operand::Integer(value), Type::Elementary(ty), span)
             }
             literal => self.coerce(literal, Type::Elementary(ty), span),
         }
@@ -314,7 +323,7 @@ impl<'s> Checker<'_, 's> {
 
     /// `**`: a REAL or LREAL base gives its own type, whatever the exponent is. A REAL to the power of what REAL does not
     /// hold exactly goes through LREAL. Integers as a base are converted.
-    fn power(&mut self, sides: Sides) -> Option<Expr> {
+    fn power(&mut self, sides: Sides) -> Option<Operand> {
         const REAL: Type = Type::Elementary(Elementary::Real);
         let op_span = sides.op_span;
         let mixes = self.decl.dialect(sides.span).mixes_bits_and_integers();
@@ -348,7 +357,10 @@ impl<'s> Checker<'_, 's> {
         let b = self.side(sides.b, computed, sides.right)?;
         let computed = Type::Elementary(computed);
         let power = self.apply(Op::Expt, computed, vec![a, b], computed, op_span)?;
-        Some(self.convert(Conversion::Value, ty, power))
+        if as_c {
+            return Some(super::operand::computed(power, ty));
+        }
+        Some(Operand::Typed(self.convert(Conversion::Value, ty, power)))
     }
 
     fn arithmetic(&mut self, sides: Sides) -> Option<Operand> {
@@ -388,12 +400,11 @@ impl<'s> Checker<'_, 's> {
             "both sides need to be numbers"
         };
         let Meeting { ty, own, a, b } = self.meet(sides, allowed, wants)?;
-        let zero = self.decl.dialect(op_span).rules().modulo_by_zero.choice == ByZero::GivesZero;
-        let op = if op == Op::Mod && zero { Op::ModOrZero } else { op };
-        let value = match op == Op::Mod && ty.elementary().is_some_and(Elementary::is_real) {
-            true => self.remainder(ty, a, b, op_span)?,
-            false if matches!(op, Op::Div | Op::Mod) => self.divided(op, ty, (a, b), op_span)?,
-            false => self.apply(op, ty, vec![a, b], ty, op_span)?,
+        let is_real = ty.elementary().is_some_and(Elementary::is_real);
+        let value = match op {
+            Op::Mod if is_real => self.remainder(ty, a, b, op_span)?,
+            Op::Div | Op::Mod => self.divided(op, ty, (a, b), op_span)?,
+            _ => self.apply(op, ty, vec![a, b], ty, op_span)?,
         };
         Some(computed(value, own))
     }
@@ -418,6 +429,12 @@ impl<'s> Checker<'_, 's> {
         if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
             let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
             self.refuse_time_overflow(sum.is_none(), span)?;
+        }
+        if self.decl.dialect(span).rules().time_is_seconds() {
+            let op = if op == Op::Add { Op::TimePlus } else { Op::TimeMinus };
+            let [a, b] = [a, b].map(|it| self.convert(Conversion::Same, Type::LINT, it));
+            let sum = self.apply(op, Type::LINT, vec![a, b], Type::LINT, op_span)?;
+            return Some(self.convert(Conversion::Same, ty, sum));
         }
         self.apply(op, ty, vec![a, b], ty, op_span)
     }
@@ -588,11 +605,14 @@ fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> O
 }
 
 /// The type at which sides are computed that give one of `own`, where integers are promoted.
-fn promoted(sides: &Sides, own: Elementary, as_c: bool) -> Elementary {
+fn promoted(sides: &Sides, own: Elementary, as_c: bool, ranks: bool) -> Elementary {
     let calculates = matches!(sides.op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod)
         || as_c && is_junction(sides.op);
-    // A promoted value may be negative: it is compared with a UDINT by what it is. C makes a UDINT of it.
-    let compared = compares(sides.op) && as_number(own) == Elementary::Udint && !as_c;
+    // A promoted value may be negative: it is compared with a UDINT by what it is. C and Logix make a UDINT of it.
+    let compared = compares(sides.op) && as_number(own) == Elementary::Udint && !as_c && !ranks;
+    if as_c && own == Elementary::Real && [&sides.a, &sides.b].into_iter().any(is_double) {
+        return Elementary::Lreal;
+    }
     if !is_narrow(own) && !compared {
         return own;
     }
@@ -600,6 +620,11 @@ fn promoted(sides: &Sides, own: Elementary, as_c: bool) -> Elementary {
         Some(ty) if calculates && is_narrow(ty) => Elementary::Dint,
         ty => ty.unwrap_or(own),
     }
+}
+
+/// A REAL that is a double in C: it has no type, or was computed with one that has none.
+fn is_double(side: &Operand) -> bool {
+    matches!(side, Operand::Real { .. }) || side.computed_at() == Some(Type::LREAL)
 }
 
 /// The type at which a literal meets a typed operand: the operand's, if the literal fits it.
@@ -625,6 +650,12 @@ fn literal_meets(
         }
         Operand::Typed(_) | Operand::Promoted(..) => None,
     }
+}
+
+/// A negative DINT as an unsigned integer of 32 bits or more: its low bits, with its sign above.
+fn immediate(value: i128, ty: Elementary) -> Option<i128> {
+    let is_dint = Elementary::Dint.repr().integer(value).is_some();
+    (is_dint && value < 0 && ty.repr().is_unsigned()).then(|| value + (1 << (ty.repr().size() * 8)))
 }
 
 /// CODESYS lets a signed and an unsigned 64-bit integer meet at the signed one.

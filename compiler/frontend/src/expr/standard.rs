@@ -6,13 +6,14 @@ use super::constant::is_constant;
 use super::operand::{Operand, computed};
 use super::overload::{Resolved, parameter_names};
 use super::text_conversion::MAX_CAPACITY;
+use crate::dialect::rules::LimitCrossed;
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
     Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind,
-    StringType, TextOp, Type, Value,
+    StringType, TextOp, Type, Use, Value,
 };
 use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
@@ -33,6 +34,7 @@ impl<'s> Checker<'_, 's> {
         let Some((signature, meaning)) = self.form(name, arguments) else {
             if let Some((signature, meaning, ty)) = functions::typed(name.text) {
                 let values = self.arguments(signature, name, arguments, span)?;
+                self.note_use(Use::Function(signature.name), name.span);
                 return self.typed_function(signature, meaning, Type::Elementary(ty), &values, name);
             }
             let parsed = functions::conversion(name.text)?;
@@ -40,6 +42,7 @@ impl<'s> Checker<'_, 's> {
             return self.conversion(parsed, values[0], name).map(Operand::Typed);
         };
         let values = self.arguments(signature, name, arguments, span)?;
+        self.note_use(Use::Function(signature.name), name.span);
         match meaning {
             Meaning::Operator(operator) => self.operator_function(signature, operator, &values, expected, name),
             Meaning::Move => self.operand(values[0], expected),
@@ -160,7 +163,9 @@ impl<'s> Checker<'_, 's> {
         }
         let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
         let value = match (op, ty) {
-            (Op::Limit, Type::Elementary(_)) if matiec => self.apply(Op::LimitLow, ty, operands, ty, span),
+            (Op::Limit, Type::Elementary(_)) => self.limited(ty, operands, span),
+            (Op::Limit, Type::String(_)) if matiec => self.limited_text_low(ty, operands, span),
+            (Op::Abs, _) if matiec => self.apply(Op::AbsIfBelow, ty, operands, ty, span),
             (_, Type::Elementary(Elementary::Real)) if matiec && is_of_math(op) => {
                 let operands =
                     operands.into_iter().map(|it| self.convert(Conversion::Value, Type::LREAL, it)).collect();
@@ -180,6 +185,16 @@ impl<'s> Checker<'_, 's> {
             _ => self.apply(op, ty, operands, ty, span),
         };
         Some(computed(value?, own))
+    }
+
+    /// LIMIT, as the dialect has it where the bounds are crossed.
+    fn limited(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        let op = match self.decl.dialect(span).rules().limit_crossed.choice {
+            LimitCrossed::Maximum => Op::Limit,
+            LimitCrossed::Value => Op::LimitInOrder,
+            LimitCrossed::Minimum => Op::LimitLow,
+        };
+        self.apply(op, ty, operands, ty, span)
     }
 
     /// A fault where the condition does not hold.
@@ -205,6 +220,7 @@ impl<'s> Checker<'_, 's> {
         if ty == Type::BOOL {
             return self.shift_one_bit(op, value, count, span);
         }
+        self.undefined_shift(op, ty, &count, span);
         let count = match op {
             // The low bits of a count turn as far as all of it: every width divides 2^64.
             Op::Rol | Op::Ror => self.convert(Conversion::Value, Type::LINT, count),
@@ -316,12 +332,8 @@ impl<'s> Checker<'_, 's> {
         };
         let mut arms: Vec<_> = (0..).zip(inputs).map(arm).collect();
         let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
-        let zero =
-            self.decl.program.repr(ty).filter(|_| matiec).map(|it| Expr::new(ty, ExprKind::Const(it.zero()), at));
-        let text = matiec && matches!(ty, Type::String(_));
-        let mut outside = match zero {
-            Some(zero) => vec![Statement::assign(result.clone(), zero, at)],
-            None if text => vec![Statement::assign(result.clone(), empty_text(ty, at), at)],
+        let mut outside = match self.nothing_of(ty, span).filter(|_| matiec) {
+            Some(nothing) => vec![Statement::assign(result.clone(), nothing, at)],
             None => vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)],
         };
         if chooses {
@@ -337,6 +349,15 @@ impl<'s> Checker<'_, 's> {
         Some(computed(Expr::load(result, at), own))
     }
 
+    /// 0, FALSE or the empty text: what MATIEC's MUX gives past its inputs.
+    fn nothing_of(&mut self, ty: Type, span: Span) -> Option<Expr> {
+        let at = self.at(span);
+        match ty {
+            Type::String(_) => Some(empty_text(ty, at)),
+            _ => Some(Expr::new(ty, ExprKind::Const(self.decl.program.repr(ty)?.zero()), at)),
+        }
+    }
+
     /// MUX of constants, with the same inputs for a K beyond them.
     fn constant_mux(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
         let mut inputs = operands.into_iter();
@@ -347,6 +368,10 @@ impl<'s> Checker<'_, 's> {
             _ if is_beyond && self.decl.dialect(span).chooses_inputs() => inputs.next_back(),
             Ok(number) => inputs.nth(number),
             Err(_) => None,
+        };
+        let chosen = match chosen {
+            None if self.decl.dialect(span).rules().has_functions_of_matiec() => self.nothing_of(ty, span),
+            chosen => chosen,
         };
         if chosen.is_none() {
             let fault = FaultKind::IndexOutOfRange;
@@ -362,29 +387,29 @@ impl<'s> Checker<'_, 's> {
         if op == TextOp::Concat {
             return self.concat(operands, span);
         }
-        let op = match op {
-            TextOp::Find if self.decl.dialect(span).rules().has_functions_of_matiec() => TextOp::FindOrEnd,
-            TextOp::Replace if self.decl.dialect(span).rules().has_functions_of_matiec() => TextOp::ReplaceUpTo,
-            _ => op,
-        };
+        let op = if self.decl.dialect(span).rules().has_functions_of_matiec() { in_matiec(op) } else { op };
         let mut ready = Vec::new();
         for (operand, repr) in operands.into_iter().zip(op.operands()) {
             ready.push(if repr.is_some() { self.count(operand)? } else { operand });
         }
         let ty = match op.result() {
             Some(_) => Type::INT,
-            None => Type::String(made_by(op, &ready)?),
+            None => Type::String(made_by(op, &ready, self.longest(span))?),
         };
         let at = self.at(span);
-        let bounds = match ready.as_slice() {
-            [_, _, count, position] if op == TextOp::Replace => Some((count.clone(), position.clone())),
-            _ => None,
-        };
+        let range =
+            self.decl.dialect(span).rules().empties_texts_out_of_range().then(|| positions(op, &ready)).flatten();
         let text = self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)?;
-        match bounds.filter(|_| self.decl.dialect(span).rules().replaces_nothing_before()) {
-            Some((count, position)) => self.replaced(text, count, position, span),
+        match range {
+            Some(range) => self.empty_outside(text, &range, span),
             None => Some(text),
         }
+    }
+
+    /// So many units has the result of a text function at most: in OpenPLC, as many as a STRING.
+    fn longest(&self, span: Span) -> u16 {
+        let rules = self.decl.dialect(span).rules();
+        if rules.has_functions_of_matiec() { rules.default_string.choice.capacity() } else { MAX_CAPACITY }
     }
 
     fn concat(&mut self, operands: Vec<Expr>, span: Span) -> Option<Expr> {
@@ -392,7 +417,7 @@ impl<'s> Checker<'_, 's> {
         let mut operands = operands.into_iter();
         let mut result = operands.next()?;
         for operand in operands {
-            let ty = Type::String(joined(result.ty.string_type()?, operand.ty.string_type()?));
+            let ty = Type::String(joined(result.ty.string_type()?, operand.ty.string_type()?, self.longest(span)));
             let joined = Expr::new(ty, ExprKind::ApplyText(TextOp::Concat, vec![result, operand]), at);
             let joined = self.evaluated(joined, span)?;
             result = self.shallow(joined);
@@ -411,6 +436,30 @@ impl<'s> Checker<'_, 's> {
         self.block.push(Statement::assign(place.clone(), text, at));
         Expr::load(place, at)
     }
+}
+
+/// The counts and positions of a function on a text, with the least values that S7 takes.
+fn positions(op: TextOp, operands: &[Expr]) -> Option<Vec<(Expr, i64)>> {
+    match (op, operands) {
+        (TextOp::Replace, [_, _, count, position]) | (TextOp::Delete, [_, count, position]) => {
+            Some(vec![(position.clone(), 1), (count.clone(), 0)])
+        }
+        (TextOp::Mid, [_, _, position]) => Some(vec![(position.clone(), 1)]),
+        (TextOp::Insert, [_, _, position]) => Some(vec![(position.clone(), 0)]),
+        _ => None,
+    }
+}
+
+/// The function of MATIEC's library in the place of the standard's, where they differ.
+fn in_matiec(op: TextOp) -> TextOp {
+    const OTHERS: [(TextOp, TextOp); 5] = [
+        (TextOp::Find, TextOp::FindOrEnd),
+        (TextOp::Mid, TextOp::MidOrLength),
+        (TextOp::Insert, TextOp::InsertFrom),
+        (TextOp::Delete, TextOp::DeleteFrom),
+        (TextOp::Replace, TextOp::ReplaceUpTo),
+    ];
+    OTHERS.iter().find(|it| it.0 == op).map_or(op, |it| it.1)
 }
 
 fn empty_text(ty: Type, at: Location) -> Expr {
@@ -443,15 +492,18 @@ fn text_depth(expr: &Expr) -> usize {
 }
 
 /// What holds both strings, one after the other.
-fn joined(a: StringType, b: StringType) -> StringType {
-    a.of_capacity(a.capacity.saturating_add(b.capacity).min(MAX_CAPACITY))
+fn joined(a: StringType, b: StringType, longest: u16) -> StringType {
+    a.of_capacity(a.capacity.saturating_add(b.capacity).min(longest))
 }
 
 /// What holds the longest result: what is inserted adds to the text.
-fn made_by(op: TextOp, operands: &[Expr]) -> Option<StringType> {
+fn made_by(op: TextOp, operands: &[Expr], longest: u16) -> Option<StringType> {
     let own = operands.first()?.ty.string_type()?;
     Some(match op {
-        TextOp::Insert | TextOp::Replace | TextOp::ReplaceUpTo => joined(own, operands.get(1)?.ty.string_type()?),
+        TextOp::MidOrLength => own.of_capacity(own.capacity.saturating_add(1).min(longest)),
+        TextOp::Insert | TextOp::InsertFrom | TextOp::Replace | TextOp::ReplaceUpTo => {
+            joined(own, operands.get(1)?.ty.string_type()?, longest)
+        }
         _ => own,
     })
 }

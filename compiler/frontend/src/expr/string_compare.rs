@@ -52,6 +52,26 @@ impl Checker<'_, '_> {
         Some(Expr::load(chosen, self.at(span)))
     }
 
+    /// `LIMIT` of strings in MATIEC: MN for what is not above it, MX for what is not below that.
+    pub(crate) fn limited_text_low(&mut self, ty: Type, texts: Vec<Expr>, span: Span) -> Option<Expr> {
+        if self.choose_now(&texts) {
+            let [min, value, max] = <[Expr; 3]>::try_from(texts).ok()?;
+            let limited = if self.is_so(Op::Lt, &value, &max, span) { value.clone() } else { max };
+            let chosen = if self.is_so(Op::Gt, &value, &min, span) { limited } else { min };
+            return Some(Expr { ty, ..chosen });
+        }
+        let at = self.at(span);
+        let [min, value, max] = <[Expr; 3]>::try_from(self.texts_in_variables(ty, texts, span)).ok()?;
+        let condition = self.compare_texts(Op::Gt, value.clone(), min.clone(), span)?;
+        let below = self.compare_texts(Op::Lt, value.clone(), max.clone(), span)?;
+        let chosen = self.chosen_text(ty, min, span);
+        let limited = vec![Statement::assign(chosen.clone(), value, at)];
+        let raised = vec![Statement::assign(chosen.clone(), max, at)];
+        let then = vec![Statement::new(StatementKind::If { condition: below, then: limited, otherwise: raised }, at)];
+        self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+        Some(Expr::load(chosen, at))
+    }
+
     /// A comparison of constants.
     fn is_so(&mut self, op: Op, a: &Expr, b: &Expr, span: Span) -> bool {
         let compared = self.compare_texts(op, a.clone(), b.clone(), span);

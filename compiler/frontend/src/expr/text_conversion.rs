@@ -29,6 +29,7 @@ impl<'s> Checker<'_, 's> {
             return self.name_of(value, id, span, name);
         }
         let (value, ty) = self.as_elementary(value, span, name)?;
+        self.note_conversion(value.ty, Type::string(0), name.span);
         let matiec = self.decl.dialect(name.span).rules().has_functions_of_matiec();
         let (op, operand, longest) = match ty {
             Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
@@ -129,6 +130,7 @@ impl<'s> Checker<'_, 's> {
 
     /// `STRING_TO_x`. An integer takes its low bits of the number that the text spells.
     pub(super) fn value_of_text(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        self.note_conversion(text.ty, Type::Elementary(to), span);
         if to.is_char() {
             return self.first_character(text, to, span);
         }
@@ -146,13 +148,27 @@ impl<'s> Checker<'_, 's> {
             _ if to.is_time() => (TextOp::ToTime, Elementary::Lint),
             _ => (TextOp::ToLint, Elementary::Lint),
         };
+        if to.is_integer() && self.decl.dialect(span).rules().writes_plus() {
+            return self.integer_of_text(text, to, span);
+        }
         let mut operands = vec![self.of_kind(text, false, span)?];
         operands.extend(self.kind_of_time(op, to, span));
-        let mut value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
-        if op == TextOp::ToLint && self.decl.dialect(span).rules().writes_plus() {
-            value = self.zero_outside(value, to, span)?;
-        }
+        let value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
         Some(self.convert(Conversion::Value, Type::Elementary(to), value))
+    }
+
+    /// The number that a text spells, 0 where the type does not hold it (S7-1200 manual, 11/2011, p. 247).
+    fn integer_of_text(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let unsigned = to.repr().is_unsigned();
+        let (op, made) = match unsigned {
+            true => (TextOp::ToUlintOr0, Elementary::Ulint),
+            false => (TextOp::ToLintOr0, Elementary::Lint),
+        };
+        let operands = vec![self.of_kind(text, false, span)?];
+        let number = self.text_function_of(op, Type::Elementary(made), operands, span)?;
+        let number = if unsigned { self.convert(Conversion::Value, Type::LINT, number) } else { number };
+        let number = self.zero_outside(number, to, span)?;
+        Some(self.convert(Conversion::Value, Type::Elementary(to), number))
     }
 
     /// A TIME is as many seconds as the number of the text has whole ones.
@@ -191,16 +207,19 @@ impl<'s> Checker<'_, 's> {
         self.apply(Op::Mul, Type::LINT, vec![number, holds], Type::LINT, span)
     }
 
-    /// What REPLACE gives: nothing where it is to begin before the first character, or to replace fewer than 0.
-    pub(super) fn replaced(&mut self, text: Expr, count: Expr, position: Expr, span: Span) -> Option<Expr> {
+    /// The text where none of these numbers is below its least value; else an empty one.
+    pub(super) fn empty_outside(&mut self, text: Expr, range: &[(Expr, i64)], span: Span) -> Option<Expr> {
         let (ty, at) = (text.ty, self.at(span));
         let lint = |value| Expr::constant(Elementary::Lint, Value::I64(value), at);
-        let begins = self.apply(Op::Ge, Type::LINT, vec![position, lint(1)], Type::BOOL, span)?;
-        let counts = self.apply(Op::Ge, Type::LINT, vec![count, lint(0)], Type::BOOL, span)?;
-        let holds = self.apply(Op::And, Type::BOOL, vec![begins, counts], Type::BOOL, span)?;
-        if holds.as_const() == Some(Value::Bool(true)) {
-            return Some(text);
+        let mut holds: Option<Expr> = None;
+        for (number, least) in range {
+            let is_in = self.apply(Op::Ge, Type::LINT, vec![number.clone(), lint(*least)], Type::BOOL, span)?;
+            holds = Some(match holds {
+                Some(holds) => self.apply(Op::And, Type::BOOL, vec![holds, is_in], Type::BOOL, span)?,
+                None => is_in,
+            });
         }
+        let Some(holds) = holds.filter(|it| it.as_const() != Some(Value::Bool(true))) else { return Some(text) };
         let length = self.zero_unless(holds, lint(MAX_CAPACITY.into()), span)?;
         self.text_function_of(TextOp::Left, ty, vec![text, length], span)
     }

@@ -32,10 +32,7 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: a
     let blocks: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).collect();
     let owners: Vec<_> = blocks.iter().map(|it| it.family).collect();
     let instruction = blocks.first()?.instructions[0].name;
-    let without = match dialect.own_blocks() {
-        Some(family) => format!("{} documents no `{}`", family.name(), name.text),
-        None => format!("`{}` has no meaning of its own in `{}`", name.text, dialect.name()),
-    };
+    let without = format!("{} documents no `{}`", dialect.family().name(), name.text);
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
     let others = dialects_of(&owners);
@@ -85,6 +82,13 @@ pub(super) fn other_dialects_pin(block: BlockId, name: &str) -> Option<&'static 
     Some(pin.name).filter(|it| !it.eq_ignore_ascii_case(name))
 }
 
+/// This block's name for a pin that the data of the same counter calls `name` in the system that the program comes from.
+pub(super) fn pin_of_data(from: Dialect, block: BlockId, name: &str) -> Option<&'static str> {
+    let theirs = crate::dialect::bare_block(from, block.info().name)?.info();
+    let other = theirs.facts.other_pins.iter().find(|it| it.name.eq_ignore_ascii_case(name))?;
+    block.info().pin_for(theirs.pin(other.pin)?.role?).map(|it| it.name)
+}
+
 /// What Logix's pages call the operands of its instructions.
 fn spelled_out(name: &str) -> Option<PinRole> {
     let words = [("Preset", PinRole::Preset), ("Accum", PinRole::Count), ("Accumulated", PinRole::Count)];
@@ -101,7 +105,7 @@ fn dialects_with_pin(block: BlockId, name: &str) -> Vec<&'static str> {
 
 /// The dialects whose bare names mean the blocks of one of these families.
 fn dialects_of(families: &[Family]) -> Vec<&'static str> {
-    let owns = |it: &&Dialect| it.own_blocks().is_some_and(|family| families.contains(&family));
+    let owns = |it: &&Dialect| families.contains(&it.family());
     Dialect::ALL.iter().filter(owns).map(|it| it.name()).collect()
 }
 

@@ -3,10 +3,10 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
-use super::operator::{Sides, compares};
+use super::operator::{Meeting, Sides, compares};
 use crate::{Span, ast};
 use ast::BinaryOp;
-use staunch_ir::{Expr, ExprKind, Projection, Type};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Projection, Type};
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn chain(
@@ -80,9 +80,34 @@ impl<'s> Checker<'_, 's> {
         let mut result = operands.next()?;
         for right in operands {
             let span = right.1;
-            result = (self.joined(op, name.span, hint, result, right)?, span);
+            let matiec = self.decl.dialect(name.span).rules().has_functions_of_matiec();
+            let one = match op == BinaryOp::Div && matiec {
+                true => self.divided_or_zero(name.span, hint, result, right)?,
+                false => self.joined(op, name.span, hint, result, right)?,
+            };
+            result = (one, span);
         }
         Some(result.0)
+    }
+
+    /// `DIV` in MATIEC: 0 where the divisor is 0. A TIME is divided as by the operator.
+    fn divided_or_zero(
+        &mut self,
+        op_span: Span,
+        hint: Option<Type>,
+        (a, left): (Operand, Span),
+        (b, right): (Operand, Span),
+    ) -> Option<Operand> {
+        let is_time = matches!(a.ty(), Some(Type::Elementary(it)) if it.is_time());
+        if is_time {
+            return self.joined(BinaryOp::Div, op_span, hint, (a, left), (b, right));
+        }
+        let a = Operand::Typed(self.materialise(a, hint, left)?);
+        let sides = Sides { a, b, left, right, op: BinaryOp::Div, op_span, span: left.to(right), hint };
+        let allowed = |ty: Elementary, _: bool| ty.is_integer() || ty.is_real();
+        let Meeting { own, a, b, .. } = self.meet(sides, allowed, "both sides need to be numbers")?;
+        let [a, b] = [a, b].map(|it| self.convert(Conversion::Value, own, it));
+        Some(Operand::Typed(self.apply(Op::DivOrZero, own, vec![a, b], own, op_span)?))
     }
 
     fn comparisons(&mut self, op: BinaryOp, values: &[&ast::Expr<'s>], name: ast::Name<'s>) -> Option<Operand> {

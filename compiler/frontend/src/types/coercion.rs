@@ -50,20 +50,39 @@ pub(crate) fn join(a: Elementary, b: Elementary) -> Option<Elementary> {
 pub(crate) type Join = fn(Elementary, Elementary) -> Option<Elementary>;
 
 pub(crate) fn join_in(dialect: Dialect) -> Join {
-    match dialect {
-        Dialect::Logix => join_in_logix,
-        _ if dialect.rules().promotes_as_c() => join,
-        _ if dialect.rules().promotes_integers() => join_promoted,
-        _ => join,
+    let rules = dialect.rules();
+    match () {
+        () if rules.ranks_numbers() => join_ranked,
+        () if rules.promotes_as_c() => join,
+        () if rules.promotes_integers() => join_promoted,
+        () => join,
     }
 }
 
-/// Logix makes a REAL of an integer beside one (1756-RM003, "Convert Integer to REAL").
-fn join_in_logix(a: Elementary, b: Elementary) -> Option<Elementary> {
-    let is_integer = |it: Elementary| it.is_integer() && it.repr().size() < 8;
-    match (a, b) {
-        (Elementary::Real, other) | (other, Elementary::Real) if is_integer(other) => Some(Elementary::Real),
-        _ => join_promoted(a, b),
+/// The types of numbers in Logix, from the lowest to the highest (1756-RM006K, p. 541).
+const RANKS: [Elementary; 10] = [
+    Elementary::Sint,
+    Elementary::Usint,
+    Elementary::Int,
+    Elementary::Uint,
+    Elementary::Dint,
+    Elementary::Udint,
+    Elementary::Lint,
+    Elementary::Ulint,
+    Elementary::Real,
+    Elementary::Lreal,
+];
+
+/// The one of two types that ranks higher. Those of fewer than 32 bits count as the type that they have elsewhere: they are computed at
+/// DINT.
+fn join_ranked(a: Elementary, b: Elementary) -> Option<Elementary> {
+    if is_narrow(a) && is_narrow(b) {
+        return join_promoted(a, b);
+    }
+    let rank = |it: Elementary| RANKS.iter().position(|ranked| *ranked == it);
+    match rank(a).zip(rank(b)) {
+        Some((first, second)) => RANKS.get(first.max(second)).copied(),
+        None => join_promoted(a, b),
     }
 }
 

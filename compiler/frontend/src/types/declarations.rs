@@ -685,6 +685,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         reentered: std::collections::BTreeSet::new(),
         reach: staunch_ir::Reach::default(),
         places: std::collections::BTreeSet::new(),
+        uses: staunch_ir::Uses::default(),
         instances: Vec::new(),
     }
 }

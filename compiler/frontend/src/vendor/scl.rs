@@ -409,8 +409,10 @@ impl<'t> Scl<'t> {
             }
             _ if self.text(at.wrapping_sub(1)) == ":" && counter::is_one(&word) => {
                 let name = self.name(self.declared_before(at));
-                let family = self.refuse_counter(&word, &name, place.start..place.start);
-                self.replace(place, &family);
+                let block = self.counter(&word, &name);
+                if block != word {
+                    self.replace(place, &block);
+                }
             }
             _ => {}
         }
@@ -445,7 +447,7 @@ impl<'t> Scl<'t> {
     /// `#delay.TON(…)` of a TON_TIME is a call of it, and so is `"C".CTU(…)` of a counter.
     fn timer(&mut self, at: usize, place: Range<usize>) {
         let is_call = self.text(at + 1) == "(" && at > 2;
-        if is_call && self.counters.contains_key(&self.name(at - 2).to_ascii_lowercase()) {
+        if is_call && self.is_counter_called_as(&self.name(at - 2), self.text(at)) {
             let dot = self.place(at - 1).start;
             return self.replace(dot..place.end, "");
         }

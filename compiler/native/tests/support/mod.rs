@@ -92,6 +92,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
         places: std::collections::BTreeSet::new(),
+        uses: Default::default(),
         instances: (0..classes.len()).map(|at| instance(ClassId::next(at))).collect(),
         classes,
         structs,

@@ -29,7 +29,7 @@ macro_rules! counts {
     )* };
 }
 
-counts!(i16 i32 i64 u16 u32 u64);
+counts!(i8 i16 i32 i64 u8 u16 u32 u64);
 
 /// `CTU`: counts up on each rising edge of `cu`, also past `pv`; `q` while `cv >= pv`. Reset
 /// wins over counting; `cv` stops at the type's maximum instead of wrapping.

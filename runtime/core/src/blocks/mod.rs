@@ -11,6 +11,7 @@ pub mod iec;
 pub mod logix;
 pub mod openplc;
 pub mod openplc4;
+pub mod s7;
 
 mod bistable;
 mod clock;

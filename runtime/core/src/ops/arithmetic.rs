@@ -54,7 +54,19 @@ pub fn modulo<T: Integer>(a: T, b: T) -> Result<T, FaultKind> {
     a.remainder(b)
 }
 
-/// [`modulo`] of OpenPLC, where the remainder of a division by zero is 0.
+/// [`div`] of integers on S7, where the quotient of a division by zero is 0.
+///
+/// ```
+/// use staunch_runtime::ops::div_or_zero;
+/// assert_eq!(div_or_zero(-7_i16, 2), -3);
+/// assert_eq!(div_or_zero(7_i16, 0), 0);
+/// ```
+#[inline]
+pub fn div_or_zero<T: Number>(a: T, b: T) -> T {
+    if b == T::ZERO { T::ZERO } else { a.quotient(b).unwrap_or(T::ZERO) }
+}
+
+/// [`modulo`] of OpenPLC and S7, where the remainder of a division by zero is 0.
 ///
 /// ```
 /// use staunch_runtime::ops::modulo_or_zero;

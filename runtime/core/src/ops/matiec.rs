@@ -2,7 +2,7 @@
 //! (thiagoralves/matiec, f9ca9ba), on x86-64 where C leaves a value undefined.
 
 use super::convert::ConvertTo;
-use super::{Real, convert};
+use super::{Number, Real, convert, from_bcd};
 use crate::time::SECOND;
 use crate::{Scalar, Time};
 
@@ -30,19 +30,152 @@ pub fn round_to_ulint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     if number >= 0.0 { round_to_lint(value) } else { 0 }
 }
 
-/// A TIME of so many seconds: the fraction is cut at nanoseconds, and whole seconds at 32 bits.
+/// `TRUNC` to a type of at most 32 bits but UDINT: the value as 32 bits with a sign, of which the type keeps the low
+/// ones. What these do not hold, and NaN, give the least DINT.
+///
+/// ```
+/// use staunch_runtime::ops::trunc_to_dint;
+/// assert_eq!([-2.5, 65535.9, 3e9, f64::NAN].map(trunc_to_dint::<f64>), [-2, 65535, -2147483648, -2147483648]);
+/// ```
+#[inline]
+pub fn trunc_to_dint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
+    i64::from(int_or_least(convert(value)))
+}
+
+/// `TRUNC` to LINT, of which UDINT keeps the low bits.
+///
+/// ```
+/// use staunch_runtime::ops::trunc_to_lint;
+/// assert_eq!([-2.5, 3e9, 1e20].map(trunc_to_lint::<f64>), [-2, 3_000_000_000, i64::MIN]);
+/// ```
+#[inline]
+pub fn trunc_to_lint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
+    low_or_least(convert(value))
+}
+
+/// `TRUNC` to ULINT: from 2^63 on, what is above that is converted, as the processor has no such conversion.
+///
+/// ```
+/// use staunch_runtime::ops::trunc_to_ulint;
+/// assert_eq!([-2.5, 1e19, 1e20, -1e20].map(trunc_to_ulint::<f64>), [-2, 1e19 as u64 as i64, 0, i64::MIN]);
+/// ```
+#[inline]
+pub fn trunc_to_ulint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
+    const HALF: f64 = 9_223_372_036_854_775_808.0;
+    let value: f64 = convert(value);
+    if value >= HALF { low_or_least(value - HALF) ^ i64::MIN } else { low_or_least(value) }
+}
+
+/// The nearest whole number, of two the one farther from 0: C's `round`.
+///
+/// ```
+/// use staunch_runtime::ops::away_from_zero;
+/// assert_eq!([2.5, -2.5, 2.4, 0.49999999999999994].map(away_from_zero::<f64>), [3.0, -3.0, 2.0, 0.0]);
+/// ```
+#[inline]
+pub fn away_from_zero<T: Real + ConvertTo<f64>>(value: T) -> f64 {
+    let value: f64 = convert(value);
+    let whole = value.rounded_to_zero();
+    let rest = value - whole;
+    if rest >= 0.5 {
+        whole + 1.0
+    } else if rest <= -0.5 {
+        whole - 1.0
+    } else {
+        whole
+    }
+}
+
+/// `ABS`: the negative of what is less than 0. So -0.0 stays one.
+///
+/// ```
+/// use staunch_runtime::ops::abs_if_below;
+/// assert_eq!(abs_if_below(-2.5), 2.5);
+/// assert!(abs_if_below(-0.0_f64).is_sign_negative());
+/// ```
+#[inline]
+pub fn abs_if_below<T: Number>(value: T) -> T {
+    if value < T::ZERO { value.negated() } else { value }
+}
+
+/// `BCD_TO_…`: 0 where a digit is more than 9.
+///
+/// ```
+/// use staunch_runtime::ops::from_bcd_or_zero;
+/// assert_eq!((from_bcd_or_zero(0x369), from_bcd_or_zero(0x3A9)), (369, 0));
+/// ```
+#[inline]
+pub fn from_bcd_or_zero(digits: i64) -> i64 {
+    let is_decimal = (0..16).all(|at| (digits >> (4 * at)) & 0xF <= 9);
+    if is_decimal { from_bcd(digits) } else { 0 }
+}
+
+/// `TO_BCD`: the digits after the sixteenth are joined with the first ones, where x86-64 shifts them to.
+///
+/// ```
+/// use staunch_runtime::ops::bcd_of;
+/// assert_eq!(bcd_of(369), 0x0369);
+/// assert_eq!(bcd_of(20_000_000_000_000_001), 0x3);
+/// ```
+#[inline]
+pub fn bcd_of(number: i64) -> i64 {
+    let mut rest = number as u64;
+    let (mut digits, mut shift) = (0, 0);
+    while rest != 0 {
+        digits |= (rest % 10).wrapping_shl(shift);
+        rest /= 10;
+        shift += 4;
+    }
+    digits as i64
+}
+
+/// TIME `+` TIME: of the seconds, 32 bits are kept.
+///
+/// ```
+/// use staunch_runtime::ops::time_plus;
+/// assert_eq!(time_plus(1_500_000_000, -2_000_000_000), -500_000_000);
+/// assert_eq!(time_plus(2_147_483_647_000_000_000, 2_000_000_000), -2_147_483_647_000_000_000);
+/// ```
+#[inline]
+pub fn time_plus(a: Time, b: Time) -> Time {
+    let seconds = ((a / SECOND) as i32).wrapping_add((b / SECOND) as i32);
+    normalized(seconds, a % SECOND + b % SECOND)
+}
+
+/// TIME `-` TIME, as [`time_plus`].
+#[inline]
+pub fn time_minus(a: Time, b: Time) -> Time {
+    let seconds = ((a / SECOND) as i32).wrapping_sub((b / SECOND) as i32);
+    normalized(seconds, a % SECOND - b % SECOND)
+}
+
+/// A second is carried where seconds and nanoseconds have different signs, or there are nanoseconds for more than one.
+#[inline]
+fn normalized(mut seconds: i32, mut nanoseconds: i64) -> Time {
+    if nanoseconds < -SECOND || seconds > 0 && nanoseconds < 0 {
+        seconds = seconds.wrapping_sub(1);
+        nanoseconds += SECOND;
+    }
+    if nanoseconds > SECOND || seconds < 0 && nanoseconds > 0 {
+        seconds = seconds.wrapping_add(1);
+        nanoseconds -= SECOND;
+    }
+    i64::from(seconds) * SECOND + nanoseconds
+}
+
+/// A TIME of so many seconds: the fraction is cut at nanoseconds. The least DINT is what 32 bits do not hold.
 ///
 /// ```
 /// use staunch_runtime::ops::time_of_seconds;
 /// assert_eq!(time_of_seconds(2.5_f64), 2_500_000_000);
 /// assert_eq!(time_of_seconds(4.01_f64), 4_009_999_999);
+/// assert_eq!(time_of_seconds(3.0e9_f64), -2_147_483_648_000_000_000);
 /// ```
 #[inline]
 pub fn time_of_seconds<T: Real + ConvertTo<f64>>(value: T) -> Time {
     let value: f64 = convert(value);
-    let whole = low_or_least(value);
-    let fraction = (value - whole as f64) * 1e9;
-    i64::from(whole as i32) * SECOND + i64::from(fraction as i32)
+    let fraction = (value - low_or_least(value) as f64) * 1e9;
+    i64::from(int_or_least(value)) * SECOND + i64::from(int_or_least(fraction))
 }
 
 /// The seconds of a TIME: whole ones, and to them what is less than one.
@@ -73,18 +206,20 @@ pub fn time_times(time: Time, by: f64) -> Time {
     of_timespec(whole.wrapping_add(rest / SECOND), fraction)
 }
 
-/// TIME divided by a number, each part by itself.
+/// TIME divided by a number, each part by itself, of which 32 bits are kept.
 ///
 /// ```
 /// use staunch_runtime::ops::time_over;
 /// assert_eq!(time_over(1_500_000_000, 2.0), 750_000_000);
+/// assert_eq!(time_over(250_000_000, 0.1), -1_794_967_296);
+/// assert_eq!(time_over(250_000_000, 0.0), 0);
 /// ```
 #[inline]
 pub fn time_over(time: Time, by: f64) -> Time {
     let seconds = (time / SECOND) as i32 as f64 / by;
     let whole = low_or_least(seconds);
-    let fraction = int_or_least((time % SECOND) as f64 / by + (seconds - whole as f64) * 1e9);
-    of_timespec(whole, fraction)
+    let fraction = low_or_least((time % SECOND) as f64 / by + (seconds - whole as f64) * 1e9);
+    of_timespec(whole, fraction as i32)
 }
 
 /// `LIMIT`: MN for what is not above it, MX for what is not below that, in this order; so NaN gives MN.

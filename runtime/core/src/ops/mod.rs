@@ -13,6 +13,7 @@ mod select;
 mod convert;
 mod dates;
 mod index;
+mod low_bits;
 mod matiec;
 mod step;
 
@@ -23,6 +24,7 @@ pub use compare::*;
 pub use convert::*;
 pub use dates::*;
 pub use index::*;
+pub use low_bits::*;
 pub use math::*;
 pub use matiec::*;
 pub use select::*;

@@ -32,6 +32,25 @@ pub fn limit<T: Scalar>(min: T, value: T, max: T) -> T {
     if raised > max { max } else { raised }
 }
 
+/// LIMIT of S7: with crossed bounds the value, and NaN where one of the three is.
+///
+/// ```
+/// use staunch_runtime::ops::limit_in_order;
+/// assert_eq!([5, 12, -1].map(|it| limit_in_order(0, it, 10)), [5, 10, 0]);
+/// assert_eq!(limit_in_order(10, 5, 3), 5);
+/// assert!(limit_in_order(0.0, 1.0, f32::NAN).is_nan());
+/// ```
+#[inline]
+pub fn limit_in_order<T: Scalar>(min: T, value: T, max: T) -> T {
+    for it in [min, max] {
+        // Only NaN is not equal to itself.
+        if it.partial_cmp(&it).is_none() {
+            return it;
+        }
+    }
+    if min > max { value } else { limit(min, value, max) }
+}
+
 /// `SEL`: `in0` when `g` is FALSE, `in1` when it is TRUE. Both have been evaluated.
 #[inline]
 pub fn sel<T: Scalar>(g: bool, in0: T, in1: T) -> T {

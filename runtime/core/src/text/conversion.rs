@@ -182,6 +182,34 @@ pub fn to_ulint(text: &[u8]) -> u64 {
     if is_negative { value.wrapping_neg() } else { value }
 }
 
+/// [`to_lint`] on S7, of decimal digits: 0 for a number that a LINT does not hold.
+///
+/// ```
+/// use staunch_runtime::text::to_lint_or_0;
+/// assert_eq!(to_lint_or_0(b"-00456"), -456);
+/// assert_eq!(to_lint_or_0(b"9223372036854775808"), 0);
+/// ```
+#[inline]
+pub fn to_lint_or_0(text: &[u8]) -> i64 {
+    let (is_negative, digits) = sign(without_spaces(text));
+    let magnitude = i128::from(whole_or_0(digits));
+    i64::try_from(if is_negative { -magnitude } else { magnitude }).unwrap_or(0)
+}
+
+/// The same of a ULINT: 0 also for what is below 0.
+///
+/// ```
+/// use staunch_runtime::text::to_ulint_or_0;
+/// assert_eq!(to_ulint_or_0(b"18446744073709551615"), u64::MAX);
+/// assert_eq!(to_ulint_or_0(b"18446744073709551616"), 0);
+/// assert_eq!(to_ulint_or_0(b"-5"), 0);
+/// ```
+#[inline]
+pub fn to_ulint_or_0(text: &[u8]) -> u64 {
+    let (is_negative, digits) = sign(without_spaces(text));
+    if is_negative { 0 } else { whole_or_0(digits) }
+}
+
 /// The nearest REAL; infinity beyond the greatest, 0 for what is no number.
 ///
 /// ```
@@ -331,6 +359,13 @@ impl Significant {
         }
         rest
     }
+}
+
+/// A number of digits, as far as they go; 0 where 64 bits do not hold it.
+fn whole_or_0(digits: &[u8]) -> u64 {
+    let digits = digits.iter().take_while(|it| it.is_ascii_digit());
+    let next = |value: u64, digit: &u8| value.checked_mul(10)?.checked_add(u64::from(*digit - b'0'));
+    digits.into_iter().try_fold(0, next).unwrap_or(0)
 }
 
 fn without_spaces(text: &[u8]) -> &[u8] {

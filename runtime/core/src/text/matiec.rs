@@ -1,6 +1,6 @@
 //! Text in OpenPLC, as C compiled by MATIEC (thiagoralves/matiec, f9ca9ba) has it.
 
-use super::{Destination, Unit, replace, to_lreal};
+use super::{Destination, Unit, delete, insert, mid, replace, to_lreal};
 use crate::decimal;
 use crate::time::{DAY, SECOND};
 use crate::{Elementary, Time};
@@ -44,7 +44,56 @@ pub fn find_or_end<U: Unit>(text: &[U], pattern: &[U]) -> i16 {
     if lacks_one { 0 } else { i16::try_from(start + 1).unwrap_or(i16::MAX) }
 }
 
-/// `REPLACE`: of `by` no more than `count` units are taken.
+/// `MID`: nothing for a negative count or position. Position 0 is the byte before the text, which holds its length.
+///
+/// ```
+/// use staunch_runtime::{Text, text::mid_or_length};
+/// let text = |count, position| Text::<8>::build(|out| mid_or_length(b"ABC", count, position, out));
+/// assert_eq!(text(2, 0).as_bytes(), b"\x03A");
+/// assert_eq!(text(2, 2).as_bytes(), b"BC");
+/// assert_eq!(text(2, -1).as_bytes(), b"");
+/// ```
+#[inline]
+pub fn mid_or_length<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
+    match position {
+        ..0 => {}
+        0 if count > 0 => {
+            out.write(&[U::ZERO.with_byte(0, text.len() as u8)]);
+            mid(text, count - 1, 1, out);
+        }
+        _ => mid(text, count, position, out),
+    }
+}
+
+/// `INSERT`: nothing for a negative position.
+///
+/// ```
+/// use staunch_runtime::{Text, text::insert_from};
+/// let text = |position| Text::<8>::build(|out| insert_from(b"ABC", b"X", position, out));
+/// assert_eq!((text(1).as_bytes(), text(-1).as_bytes()), (b"AXBC".as_slice(), b"".as_slice()));
+/// ```
+#[inline]
+pub fn insert_from<U: Unit>(text: &[U], inserted: &[U], position: i64, out: &mut Destination<'_, U>) {
+    if position >= 0 {
+        insert(text, inserted, position, out);
+    }
+}
+
+/// `DELETE`: nothing for a negative count or position.
+///
+/// ```
+/// use staunch_runtime::{Text, text::delete_from};
+/// let text = |count| Text::<8>::build(|out| delete_from(b"ABC", count, 2, out));
+/// assert_eq!((text(1).as_bytes(), text(-1).as_bytes()), (b"AC".as_slice(), b"".as_slice()));
+/// ```
+#[inline]
+pub fn delete_from<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
+    if count >= 0 && position >= 0 {
+        delete(text, count, position, out);
+    }
+}
+
+/// `REPLACE`: of `by` no more than `count` units are taken. Nothing for a negative count or position.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::replace_up_to};
@@ -53,7 +102,10 @@ pub fn find_or_end<U: Unit>(text: &[U], pattern: &[U]) -> i16 {
 /// ```
 #[inline]
 pub fn replace_up_to<U: Unit>(text: &[U], by: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
-    let taken = usize::try_from(count).unwrap_or(0).min(by.len());
+    if count < 0 || position < 0 {
+        return;
+    }
+    let taken = usize::try_from(count).unwrap_or(by.len()).min(by.len());
     // Beyond the text, all of it stays.
     let position = if position > text.len() as i64 { position.saturating_add(1) } else { position };
     replace(text, by.get(..taken).unwrap_or(by), count, position, out);

@@ -52,13 +52,13 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
         return Ok(Verdict::Rejected("it is refused".to_owned()));
     };
     let table = Table::parse(&case.pinned(Pin::Scan))?;
-    if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises {
+    if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises || settings.options.s7_ld_edge {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
-    // The witness knows families, and SCL is of none.
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
-    if settings.options.dialect == Dialect::Siemens && (has("**") || has("_TO_STRING") || has("EN :")) {
-        return Ok(Verdict::Rejected("a power, the text of a number, or an EN, in SCL".to_owned()));
+    let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "MID(", "DELETE(", "INSERT(", "LIMIT("];
+    if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
+        return Ok(Verdict::Rejected("a function, a power, or the text of a number, in SCL".to_owned()));
     }
     let is_computed =
         || ["_TO_", "REAL", "TIME", "TON", "TOF", "TP", "F_TRIG", "F_EDGE", "STRING"].iter().any(|it| has(it));

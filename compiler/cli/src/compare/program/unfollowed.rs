@@ -1,20 +1,19 @@
-//! Where a program computes with a type that its system holds otherwise than it is held here: the rules that are known
-//! and not followed.
+//! Where a program uses what its system computes otherwise than it is computed here: the rules that are known and not
+//! followed.
 
 use staunch_frontend::Dialect;
 use staunch_frontend::rules::{NOT_FOLLOWED, Use};
-use staunch_ir::{Elementary, Expr, ExprKind, Op, Program, Section, visit};
+use staunch_ir::{Field, Program, Section};
 
-/// A sentence for each type that the program computes with, or is given from outside.
+/// A sentence for each rule that the program's source uses, or whose type it is given from outside.
 pub fn find(program: &Program, dialect: Dialect) -> Vec<String> {
     let rows = NOT_FOLLOWED.iter().filter(|it| it.dialect == dialect);
     let found = rows.filter_map(|row| {
-        let Use::Type(ty) = row.uses;
-        let line = used(program, ty)?;
+        let line = used(program, row.uses)?;
         let system = dialect.name().to_ascii_uppercase();
         Some(format!(
             "{} of {system}, which is not followed here and is used in line {line}: {} ({})",
-            row.uses.name(),
+            row.uses.words(),
             row.what,
             row.evidence
         ))
@@ -22,40 +21,55 @@ pub fn find(program: &Program, dialect: Dialect) -> Vec<String> {
     found.collect()
 }
 
-/// The first line that computes with a type, or declares an input of it. What is only assigned or compared cannot leave
-/// the type's range.
-fn used(program: &Program, ty: Elementary) -> Option<u32> {
-    let is_it = |it: &staunch_ir::Field| it.section == Section::Input && it.ty.elementary() == Some(ty);
+/// The first line that has it: of a type, also one that declares an input of it.
+fn used(program: &Program, wanted: Use) -> Option<u32> {
+    let is_it = |it: &&Field| match (wanted, it.ty.elementary()) {
+        (Use::Type(ty), Some(own)) => it.section == Section::Input && own == ty,
+        (Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..) | Use::Literal(_), _) => false,
+    };
     let programs = program.instances.iter().map(|it| program.class(it.program).state).chain([program.globals]);
-    let inputs =
-        programs.flat_map(|it| &program.structure(it).fields).filter(|it| is_it(it)).map(|it| it.location.line);
-    let mut lines: Vec<u32> = inputs.collect();
-    for routine in &program.routines {
-        visit::statements(&routine.body, &mut |statement| {
-            visit::values(statement, &mut |value| {
-                if computes(value, ty) {
-                    lines.push(statement.at.line);
-                }
-            });
-        });
-    }
-    lines.into_iter().min()
+    let inputs = programs.flat_map(|it| &program.structure(it).fields).filter(is_it).map(|it| it.location.line);
+    inputs.chain(program.uses.first(wanted).map(|it| it.line)).min()
 }
 
-fn computes(expr: &Expr, ty: Elementary) -> bool {
-    let is_it = |it: &Expr| it.ty.elementary() == Some(ty);
-    let chooses = |op: Op| matches!(op, Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne | Op::Min | Op::Max);
-    match &expr.kind {
-        ExprKind::Apply(op, operands) => {
-            let own = !chooses(*op) && (is_it(expr) || operands.iter().any(is_it));
-            own || operands.iter().any(|it| computes(it, ty))
-        }
-        ExprKind::ApplyText(_, operands) => operands.iter().any(|it| is_it(it) || computes(it, ty)),
-        ExprKind::Convert(_, inner) => is_it(expr) != is_it(inner) || computes(inner, ty),
-        ExprKind::Const(_)
-        | ExprKind::Text(_)
-        | ExprKind::Aggregate(_)
-        | ExprKind::AddressOf(_)
-        | ExprKind::Load(_) => false,
+#[cfg(test)]
+mod tests {
+    use super::{Use, used};
+    use staunch_frontend::{Options, Source, Sources, compile};
+    use staunch_ir::Elementary;
+    use staunch_runtime::Class;
+
+    const SOURCE: &str = "PROGRAM p
+VAR_INPUT x : LREAL; END_VAR
+VAR s : STRING; n : INT; w : WORD; r : REAL; t : TIME; b : BOOL; END_VAR
+s := LEFT('AB', 1);
+n := 2 + 3;
+r := 7.0 / 2.0;
+w := REAL_TO_WORD(REAL#2.5);
+t := T#1s - T#2s;
+b := WORD#1 = WORD#2;
+END_PROGRAM
+";
+
+    /// Each kind of use is found, also where constants are folded.
+    #[test]
+    fn each_kind_of_use_is_found() {
+        let mut sources = Sources::default();
+        sources.add(Source::new("uses.st", SOURCE.to_owned()));
+        let compiled = compile(&sources, &Options::default());
+        let program = compiled.program.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics));
+        let found = |wanted| used(&program, wanted);
+        assert_eq!(found(Use::Function("LEFT")), Some(4));
+        assert_eq!(found(Use::Function("RIGHT")), None);
+        assert_eq!(found(Use::Literal(Class::Int)), Some(5));
+        assert_eq!(found(Use::Operator("+", Class::Int)), Some(5));
+        assert_eq!(found(Use::Operator("+", Class::Real)), None);
+        assert_eq!(found(Use::Literal(Class::Real)), Some(6));
+        assert_eq!(found(Use::Conversion(Class::Real, Class::Bit)), Some(7));
+        assert_eq!(found(Use::Conversion(Class::Real, Class::Int)), None);
+        assert_eq!(found(Use::Type(Elementary::Time)), Some(8));
+        assert_eq!(found(Use::Type(Elementary::Lreal)), Some(2));
+        assert_eq!(found(Use::Operator("=", Class::Bit)), Some(9));
+        assert_eq!(found(Use::Type(Elementary::Sint)), None);
     }
 }

@@ -1,24 +1,34 @@
-//! The counters of S7, and what a family has in their place.
+//! The types of the counters of S7, and the blocks that they are.
 
 use rustc_hash::FxHashMap;
-use staunch_runtime::{BLOCKS, Family};
 
 /// Data of a counter, which does not say which one it is of, and the suffix of a counter of its numbers.
 const DATA: [(&str, &str); 8] = [
     ("IEC_COUNTER", ""),
-    ("IEC_SCOUNTER", ""),
+    ("IEC_SCOUNTER", "_SINT"),
     ("IEC_DCOUNTER", "_DINT"),
     ("IEC_LCOUNTER", "_LINT"),
-    ("IEC_UCOUNTER", ""),
-    ("IEC_USCOUNTER", ""),
+    ("IEC_UCOUNTER", "_UINT"),
+    ("IEC_USCOUNTER", "_USINT"),
     ("IEC_UDCOUNTER", "_UDINT"),
     ("IEC_ULCOUNTER", "_ULINT"),
 ];
 
 pub const INSTRUCTIONS: [&str; 3] = ["CTUD", "CTU", "CTD"];
 
-/// Names of counters in lower case, and the instruction that a call of each names.
-pub type Counters = FxHashMap<String, Option<&'static str>>;
+/// What is known of the calls of a counter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Called {
+    /// None in this file.
+    Nowhere,
+    /// All name this instruction.
+    As(&'static str),
+    /// They name several.
+    Otherwise,
+}
+
+/// Names of counters in lower case.
+pub type Counters = FxHashMap<String, Called>;
 
 /// Whether a type, in capitals, is one of the system's counters.
 pub fn is_one(ty: &str) -> bool {
@@ -26,26 +36,20 @@ pub fn is_one(ty: &str) -> bool {
 }
 
 /// The counter, and what follows its name: `_INT`.
-fn instruction(ty: &str) -> Option<(&'static str, &str)> {
+pub fn instruction(ty: &str) -> Option<(&'static str, &str)> {
     let named = |name: &'static str| Some((name, ty.strip_prefix(name)?));
-    INSTRUCTIONS.into_iter().find_map(named).filter(|it| it.1.is_empty() || it.1.starts_with('_'))
+    let numbers = |it: &str| it == "_INT" || DATA.iter().any(|row| row.1 == it);
+    INSTRUCTIONS.into_iter().find_map(named).filter(|it| numbers(it.1))
 }
 
-/// What the standard's family has in place of a counter with the numbers of a type, `CTD_INT`.
-fn with_numbers(name: &str, numbers: &str) -> String {
-    let full = format!("{name}{numbers}");
-    let has = BLOCKS.iter().any(|it| it.family == Family::Iec && it.is_named(&full));
-    format!("IEC.{}", if has { full.as_str() } else { name })
-}
-
-/// What the standard's family has in place of a counter's type; `called` is the instruction that a call of it names.
-pub fn of_the_standard(ty: &str, called: Option<&str>) -> String {
+/// The block that a counter is: its data where calls do not say which one. A counter of INTs has the bare name, which other
+/// systems have as well.
+pub fn block(ty: &str, called: Called) -> String {
     let upper = ty.to_ascii_uppercase();
-    match instruction(&upper) {
-        Some((counter, numbers)) => with_numbers(counter, numbers),
-        None => {
-            let numbers = DATA.iter().find(|it| it.0 == upper).map_or("", |it| it.1);
-            with_numbers(called.unwrap_or("CTUD"), numbers)
-        }
+    let data = DATA.iter().find(|it| it.0 == upper);
+    match (instruction(&upper), data, called) {
+        (Some((counter, "_INT")), ..) => counter.to_owned(),
+        (None, Some((_, numbers)), Called::As(counter)) => format!("{counter}{numbers}"),
+        _ => upper,
     }
 }

@@ -34,15 +34,12 @@ impl Scl<'_> {
             self.out.write("END_STRUCT; END_TYPE\n", &place);
             format!("{name}_data")
         } else {
-            let mut ty = self.global_name(self.at);
+            let ty = self.global_name(self.at);
+            let is_word = self.token(self.at).is_some_and(|it| it.kind == Kind::Word);
             let place = self.place(self.at);
-            if super::counter::is_one(&ty.to_ascii_uppercase()) {
-                ty = self.refuse_counter(&ty, &name, place);
-            } else {
-                self.replace(place, "");
-            }
+            self.replace(place, "");
             self.at += 1;
-            ty
+            if is_word && super::counter::is_one(&ty.to_ascii_uppercase()) { self.counter(&ty, &name) } else { ty }
         };
         let values = self.values();
         let retain = if is_retained { "RETAIN " } else { "" };

@@ -3,7 +3,7 @@
 
 use super::list::Pitfall;
 use Form::{Down, Up, UpDown};
-use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4};
+use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
 
 /// Where no text is proved.
 const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
@@ -44,7 +44,7 @@ impl Advice {
 }
 
 /// Of the systems whose counters are blocks, all but Cscape.
-const NOT_CSCAPE: &[Dialect] = &[Iec, Codesys, Openplc];
+const NOT_CSCAPE: &[Dialect] = &[Iec, Siemens, Codesys, Openplc];
 
 const fn advice(
     name: &'static str,
@@ -73,9 +73,9 @@ const BLOCKS: &[Advice] = &[
         "Make an edge in each call, and stop at the preset (here 50) as CSCAPE does: \
          `c(CU := FALSE, R := …); c(CU := sensor AND c.CV < 50, R := …)`.",
     ),
-    advice("great preset", &[2], &[Iec, Codesys], &[Cscape], GREAT_PRESET),
-    advice("great preset", &[15], &[Iec, Codesys], &[Openplc], GREAT_PRESET),
-    advice("great preset", &[10], &[Iec, Codesys], &[Cscape], GREAT_PRESET),
+    advice("great preset", &[2], &[Iec, Siemens, Codesys], &[Cscape], GREAT_PRESET),
+    advice("great preset", &[15], &[Iec, Siemens, Codesys], &[Openplc], GREAT_PRESET),
+    advice("great preset", &[10], &[Iec, Siemens, Codesys], &[Cscape], GREAT_PRESET),
     advice(
         "great preset, below",
         &[10],
@@ -96,21 +96,21 @@ const BLOCKS: &[Advice] = &[
         "below the preset",
         &[2],
         &[Cscape],
-        &[Iec, Codesys],
+        &[Iec, Siemens, Codesys],
         "Count only below the preset (here 50): `e(CLK := sensor); c(CU := e.Q AND c.CV < 50, …)`.",
     ),
     advice(
         "between 0 and the preset",
         &[15],
         &[Openplc],
-        &[Iec, Codesys],
+        &[Iec, Siemens, Codesys],
         "Count up only below the preset (here 50): `e(CLK := sensor); c(CU := e.Q AND c.CV < 50, …)`.",
     ),
     advice(
         "between 0 and the preset",
         &[15],
         &[Openplc],
-        &[Iec],
+        &[Iec, Siemens],
         "Count down only above 0: `e(CLK := sensor); c(CD := e.Q AND c.CV > 0, …)`.",
     )
     .of(&[Down]),
@@ -123,22 +123,22 @@ const BLOCKS: &[Advice] = &[
          `c(CD := FALSE, LD := …); c(CD := sensor AND c.CV > 0, LD := …)`.",
     )
     .of(&[Down]),
-    advice("above 0", &[3], &[Codesys, Cscape], &[Iec], ABOVE_0).of(&[Down]),
-    advice("above 0", &[14], &[Codesys, Openplc], &[Iec], ABOVE_0).of(&[Down]),
+    advice("above 0", &[3], &[Codesys, Cscape], &[Iec, Siemens], ABOVE_0).of(&[Down]),
+    advice("above 0", &[14], &[Codesys, Openplc], &[Iec, Siemens], ABOVE_0).of(&[Down]),
     advice("above 0", &[14], &[Openplc], &[Codesys], ABOVE_0).of(&[Down]),
-    advice("own variable", &[3], &[Iec], &[Cscape, Codesys], OWN_VARIABLE).of(&[Down]),
-    advice("own variable", &[15], &[Iec], &[Openplc], OWN_VARIABLE).of(&[Down]),
+    advice("own variable", &[3], &[Iec, Siemens], &[Cscape, Codesys], OWN_VARIABLE).of(&[Down]),
+    advice("own variable", &[15], &[Iec, Siemens], &[Openplc], OWN_VARIABLE).of(&[Down]),
     advice(
         "count up to 32767",
         &[8],
-        &[Iec, Openplc],
+        &[Iec, Siemens, Openplc],
         &[Codesys],
         "Keep the count within 0..32767: `e(CLK := pulse); c(CU := e.Q AND c.CV < 32767, …)`.",
     ),
     advice(
         "preset from 0",
         &[8],
-        &[Iec, Openplc],
+        &[Iec, Siemens, Openplc],
         &[Codesys],
         "Give a preset that can be negative as `INT_TO_WORD(MAX(preset, 0))`.",
     ),
@@ -146,7 +146,7 @@ const BLOCKS: &[Advice] = &[
         "wider",
         &[8],
         &[Codesys],
-        &[Iec, Openplc],
+        &[Iec, Siemens, Openplc],
         "Count in a CTU_DINT, and stop where a WORD does: `e(CLK := pulse); c(CU := e.Q AND c.CV < 65535, …)`.",
     ),
     advice(
@@ -157,26 +157,42 @@ const BLOCKS: &[Advice] = &[
         "Count in a DINT of your own: `e(CLK := pulse); IF e.Q AND n < preset THEN n := n + 1; END_IF`, `n >= preset` in place of Q.",
     ),
     advice(
+        "loaded in each call",
+        &[20],
+        &[Iec],
+        &[Siemens],
+        "Call it twice, so that LD rises in each scan: `c(CD := pulse, LD := FALSE, …); c(LD := load);`.",
+    )
+    .of(&[Down]),
+    advice(
+        "loaded once",
+        &[20],
+        &[Siemens],
+        &[Iec],
+        "Find both edges yourself: `l(CLK := load); e(CLK := pulse); c(CD := e.Q AND NOT load, LD := l.Q, …)`.",
+    )
+    .of(&[Down]),
+    advice(
         "positions",
         &[9],
-        &[Iec, Codesys, Openplc, Cscape],
-        &[Iec, Codesys, Openplc, Cscape],
+        &[Iec, Siemens, Codesys, Openplc, Cscape],
+        &[Iec, Siemens, Codesys, Openplc, Cscape],
         "Give the inputs by position, or rename the pins as the lints say; `--write` does.",
     ).of(&[]),
     advice(
         "fall",
         &[16],
-        &[Iec, Codesys, Cscape, Logix],
+        &[Iec, Siemens, Codesys, Cscape, Logix],
         &[Openplc],
         "Find the edge yourself: `fell := before AND NOT sensor; before := sensor;`.",
     ).of(&[]),
     advice(
         "retain",
         &[11],
-        &[Iec, Codesys, Openplc, Cscape, Logix],
-        &[Iec, Codesys, Openplc, Cscape, Logix],
+        &[Iec, Siemens, Codesys, Openplc, Cscape, Logix],
+        &[Iec, Siemens, Codesys, Openplc, Cscape, Logix],
         "Declare RETAIN what both are to keep, also in the program that moves (on CSCAPE R_CTU or R_CTD with a RETAIN RCV); CSCAPE, \
-         IEC and OPENPLC have no variable that only STOP -> RUN keeps. Logix keeps all.",
+         IEC, OPENPLC and S7 have no variable that only STOP -> RUN keeps. Logix keeps all.",
     ).of(&[]),
 ];
 
@@ -221,7 +237,7 @@ const TO_LOGIX: &[Advice] = &[
     advice(
         "count and load",
         &[4],
-        &[Iec, Codesys, Openplc, Cscape],
+        &[Iec, Siemens, Codesys, Openplc, Cscape],
         &[Logix],
         "Ask for `c.ACC <= 0` instead of DN, and load after the CTD: `IF load THEN c.ACC := c.PRE; END_IF`.",
     ).of(&[Down]),
@@ -247,7 +263,7 @@ const TO_LOGIX: &[Advice] = &[
     advice(
         "before the limit",
         &[7],
-        &[Iec, Openplc],
+        &[Iec, Siemens, Openplc],
         &[Logix],
         "Stop the count before its limit: `edge := pulse AND NOT before AND c.ACC < 2147483647; before := pulse;`.",
     ),
@@ -285,14 +301,14 @@ const FROM_LOGIX: &[Advice] = &[
         "DN as it was",
         &[13],
         &[Logix],
-        &[Iec, Codesys, Openplc, Cscape],
+        &[Iec, Siemens, Codesys, Openplc, Cscape],
         "Ask for it only while the rung is TRUE, in a RETAIN variable: `IF rung THEN full := c.CV >= preset; END_IF`.",
     ),
     advice(
         "DN of a CTD",
         &[4],
         &[Logix],
-        &[Iec],
+        &[Iec, Siemens],
         "DN of Logix is `c.CV >= preset`, and not Q: `IF rung THEN done := c.CV >= preset; END_IF`, with `done` RETAIN.",
     ).of(&[Down]),
     advice(
@@ -304,14 +320,14 @@ const FROM_LOGIX: &[Advice] = &[
          `IF rung THEN done := n >= preset; END_IF`.",
     ).of(&[Down]),
     advice("own variable for Logix", &[3], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE_DOWN).of(&[Down]),
-    advice("own variable for Logix", &[7], &[Logix], &[Iec, Openplc], LOGIX_VARIABLE),
+    advice("own variable for Logix", &[7], &[Logix], &[Iec, Siemens, Openplc], LOGIX_VARIABLE),
     advice("own variable for Logix", &[8], &[Logix], &[Codesys, Cscape], LOGIX_VARIABLE),
     advice("own variable for Logix", &[15], &[Logix], &[Openplc], LOGIX_VARIABLE_DOWN).of(&[Down]),
     advice(
         "wider",
         &[8],
         &[Logix],
-        &[Iec, Openplc],
+        &[Iec, Siemens, Openplc],
         "Count in a CTU_DINT: it holds what a COUNTER does, and stops at 2147483647, where that wraps (trap 7).",
     ),
 ];
@@ -350,7 +366,7 @@ impl Pitfall {
         let text = texts.join(" ");
         match to {
             Cscape | Codesys => text.replace("R := ", "RESET := ").replace("LD := ", "LOAD := "),
-            Iec | Openplc | Openplc4 | Logix | Dialect::Siemens => text,
+            Iec | Openplc | Openplc4 | Logix | Siemens => text,
         }
     }
 }

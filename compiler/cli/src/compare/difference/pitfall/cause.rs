@@ -56,7 +56,13 @@ fn is_kept_alike(pair: &Pair, at: usize, event: Option<Event>) -> bool {
 pub(super) fn kind(instance: &Instance) -> Option<Kind> {
     let info = instance.block.info();
     let count = info.pin_for(PinRole::Count)?;
-    Some(Kind { family: info.family, repr: count.repr(), stops: info.facts.stops, falls: info.facts.counts_falls })
+    Some(Kind {
+        family: info.family,
+        repr: count.repr(),
+        stops: info.facts.stops,
+        falls: info.facts.counts_falls,
+        loads_once: info.facts.loads_on_edges,
+    })
 }
 
 fn pins(instance: &Instance, state: &[u8]) -> Pins {

@@ -27,6 +27,8 @@ pub struct Kind {
     pub stops: bool,
     /// It counts down on the falling edge.
     pub falls: bool,
+    /// It is loaded when its input rises, and not while that is TRUE.
+    pub loads_once: bool,
 }
 
 /// How a program uses a counter, as far as it decides which pitfall is seen.
@@ -85,6 +87,12 @@ impl Case {
         let (before, now) = (self.before[side], self.now[side]);
         let down = before.down != now.down && now.down != self.kinds[side].falls;
         self.parts(Family::Openplc4) && !before.up && now.up && down
+    }
+
+    /// One side is loaded in each call with LD TRUE, the other in the first of them.
+    fn loads_otherwise(&self) -> bool {
+        let side = usize::from(self.kinds[1].loads_once);
+        self.kinds[0].loads_once != self.kinds[1].loads_once && self.before[side].load && self.now[side].load
     }
 
     fn up(&self) -> bool {
@@ -162,6 +170,9 @@ fn of_scan(case: &Case) -> Option<usize> {
 
 fn counts(case: &Case) -> Option<usize> {
     let [a, b] = case.now;
+    if case.loads_otherwise() && !case.given_differs() {
+        return Some(20);
+    }
     if case.at_limit() {
         // What stops one side's count, or turns it round, is its width where the other's is wider.
         return Some(if case.is_wider() { 8 } else { 7 });
@@ -243,7 +254,7 @@ pub(super) fn is_openplc(family: Family) -> bool {
 
 /// Whether a count of this kind can be negative.
 pub(super) fn goes_below(kind: Kind) -> bool {
-    matches!(kind.family, Family::Iec | Family::Logix) && kind.repr.is_signed()
+    matches!(kind.family, Family::Iec | Family::Logix | Family::S7) && kind.repr.is_signed()
 }
 
 #[cfg(test)]

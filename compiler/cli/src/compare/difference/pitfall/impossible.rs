@@ -94,6 +94,9 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         17 | 18 if !parts(Family::Openplc4) => Some("OPENPLC4 is neither, or both, of the two systems"),
         17 => no_down.or_else(|| (a.falls == b.falls).then_some("both systems count CD on the same edge")),
         18 => no_down.or(no_up),
+        20 if !parts(Family::S7) => Some("S7 is neither, or both, of the two systems"),
+        20 if !has(PinRole::Load) => Some("it has no LD"),
+        20 => (a.loads_once == b.loads_once).then_some("LD loads in the same way on both systems"),
         _ if !parts_openplc => Some("OPENPLC is neither, or both, of the two systems"),
         _ => (a.stops == b.stops && goes_below(a) == goes_below(b)).then_some("the other system stops as OPENPLC does"),
     }

@@ -4,18 +4,18 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Pitfall(usize);
 
-const PITFALLS: [&str; 19] = [
+const PITFALLS: [&str; 20] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
     "Past PV: CSCAPE holds; `IF c.CV > PV` never fires there, `CV = PV` fires for long.",
-    "CTD at 0: IEC and Logix go negative; CSCAPE and CODESYS stay.",
+    "CTD at 0: IEC, S7 and Logix go negative; CSCAPE and CODESYS stay.",
     "Logix CTD: DN is TRUE while ACC >= PRE, so it drops when done; there is no load input.",
     "Input already TRUE at start-up: Logix does not count it, the others do.",
-    "Input still TRUE after a reset: Logix counts one when the reset goes, CSCAPE goes on counting, IEC and CODESYS do not count.",
-    "Limits: IEC, CODESYS saturate; Logix wraps with OV/UN.",
+    "Input still TRUE after a reset: Logix counts one when the reset goes, CSCAPE goes on counting, IEC, S7 and CODESYS do not count.",
+    "Limits: IEC, S7 and CODESYS saturate; Logix wraps with OV/UN.",
     "Widths: INT, WORD, DINT. `CV < 0` is never TRUE in CODESYS; -1 written to a WORD preset is 65535.",
     "Pin names R/LD against RESET/LOAD: positional calls survive a move, named ones do not.",
     "PV lowered under CV: Q drops on CSCAPE, holds elsewhere.",
-    "Restart: Logix keeps all, and so does CODESYS over STOP -> RUN; else IEC and CODESYS restart at 0 unless the instance is RETAIN; CSCAPE needs R_CTU/R_CTD and a RETAIN RCV.",
+    "Restart: Logix keeps all, and so does CODESYS over STOP -> RUN; else IEC, S7 and CODESYS restart at 0 unless the instance is RETAIN; CSCAPE needs R_CTU/R_CTD and a RETAIN RCV.",
     "`c(R := done); done := c.Q;` loses a call on CSCAPE, an edge of a CTUD's other input, and an edge when PV moves.",
     "DN of Logix is evaluated only while the rung is TRUE; Q of the others in every call.",
     "The guard `CD := pulse AND c.CV > 0` makes an edge of its own when CV leaves 0.",
@@ -24,6 +24,7 @@ const PITFALLS: [&str; 19] = [
     "CD: OPENPLC4 (OpenPLC from v4.1, Editor 4.2.11 too) counts down when the input falls, the others when it rises.",
     "Both edges of a CTUD in one call: OPENPLC4 counts up, then down, so at PV it counts down; on the others CV stays.",
     "TON, TOF and TP on OPENPLC4 see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
+    "LD held TRUE: S7 with `s7-ld = \"edge\"` loads PV in its first call; the others in each, so that CV follows PV and is PV when R goes.",
 ];
 
 impl Pitfall {

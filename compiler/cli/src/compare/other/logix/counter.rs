@@ -22,8 +22,12 @@ pub struct Counter {
 }
 
 /// The types of counts that a COUNTER can hold, and what makes one of its count.
-const NARROWED: [(Elementary, Option<&str>); 3] =
-    [(Elementary::Dint, None), (Elementary::Int, Some("DINT_TO_INT")), (Elementary::Word, Some("DINT_TO_WORD"))];
+const NARROWED: [(Elementary, Option<&str>); 4] = [
+    (Elementary::Dint, None),
+    (Elementary::Int, Some("DINT_TO_INT")),
+    (Elementary::Sint, Some("DINT_TO_SINT")),
+    (Elementary::Word, Some("DINT_TO_WORD")),
+];
 
 impl Counter {
     pub fn named(name: &str, from: Dialect) -> Option<Self> {

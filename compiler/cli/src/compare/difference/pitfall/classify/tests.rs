@@ -6,10 +6,10 @@ use staunch_frontend::Dialect;
 
 const IDLE: Pins =
     Pins { up: false, down: false, reset: false, load: false, preset: 5, count: 0, done: false, empty: false };
-const IEC: Kind = Kind { family: Family::Iec, repr: Repr::I16, stops: false, falls: false };
-const CSCAPE: Kind = Kind { family: Family::Cscape, repr: Repr::I16, stops: true, falls: false };
-const CODESYS: Kind = Kind { family: Family::Codesys, repr: Repr::U16, stops: false, falls: false };
-const LOGIX: Kind = Kind { family: Family::Logix, repr: Repr::I32, stops: false, falls: false };
+const IEC: Kind = Kind { family: Family::Iec, repr: Repr::I16, stops: false, falls: false, loads_once: false };
+const CSCAPE: Kind = Kind { family: Family::Cscape, repr: Repr::I16, stops: true, falls: false, loads_once: false };
+const CODESYS: Kind = Kind { family: Family::Codesys, repr: Repr::U16, stops: false, falls: false, loads_once: false };
+const LOGIX: Kind = Kind { family: Family::Logix, repr: Repr::I32, stops: false, falls: false, loads_once: false };
 
 fn case(to: Kind, before: Pins, now: [Pins; 2]) -> Case {
     let kinds = [IEC, to];
@@ -68,6 +68,10 @@ fn what_happened_before_decides() {
     assert_eq!(number(case(later, count(IDLE, 5), [count(down, 4), count(down, 5)])), Some(17));
     let rising = Kind { falls: false, ..later };
     let both = Pins { down: true, ..up };
+    let s7 = Kind { family: Family::S7, loads_once: true, ..IEC };
+    let load = Pins { load: true, ..IDLE };
+    assert_eq!(number(case(s7, count(load, 5), [count(load, 6), count(load, 5)])), Some(20));
+    assert_eq!(number(case(s7, IDLE, [count(load, 6), count(load, 5)])), None);
     assert_eq!(number(case(rising, count(IDLE, 5), [count(both, 5), count(both, 4)])), Some(18));
     let done = Pins { done: true, ..IDLE };
     assert_eq!(number(Case { counts_down: true, ..case(LOGIX, IDLE, [done, IDLE]) }), Some(4));

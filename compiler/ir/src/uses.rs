@@ -1,0 +1,95 @@
+//! What a program uses of the language, as far as a system may compute it in its own way.
+
+use staunch_runtime::{Class, Elementary, Location};
+use std::collections::BTreeMap;
+
+/// One such thing. Classes of types are those of the operands; a use of a class is one of the classes around it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Use {
+    /// The program computes with the type, or converts it. Choosing and comparing do not count: they make no new values.
+    Type(Elementary),
+    /// A standard function, by its name in the tables: `LEFT`, also where `LEFT_STRING` is written.
+    Function(&'static str),
+    /// An operator with an operand of the class: `MOD`. `ADD(a, b)` is `+`, and the sign `-` is `NEG`.
+    Operator(&'static str, Class),
+    /// From one class to another, by a function or by itself.
+    Conversion(Class, Class),
+    /// An operand that is a number without a type's name.
+    Literal(Class),
+}
+
+impl Use {
+    /// In words, for tables and messages.
+    pub fn words(self) -> String {
+        match self {
+            Self::Type(it) => it.name().to_owned(),
+            Self::Function(name) => name.to_owned(),
+            Self::Operator(operator, class) => format!("`{operator}` of {}", class.name()),
+            Self::Conversion(from, to) => format!("{} to {}", from.name(), to.name()),
+            Self::Literal(class) => format!("an operand of {} without a type", class.name()),
+        }
+    }
+
+    /// Whether what is found in a program is a use of this.
+    fn covers(self, found: Self) -> bool {
+        match (self, found) {
+            (Self::Operator(own, class), Self::Operator(other, of)) => own == other && class.contains(of),
+            (Self::Conversion(from, to), Self::Conversion(own, other)) => from.contains(own) && to.contains(other),
+            (Self::Literal(class), Self::Literal(of)) => class.contains(of),
+            (Self::Type(_) | Self::Function(_), _) => self == found,
+            (Self::Operator(..) | Self::Conversion(..) | Self::Literal(_), _) => false,
+        }
+    }
+}
+
+/// What a program uses, each with the first place in its source. What was a constant expression is among it.
+#[derive(Clone, Debug, Default)]
+pub struct Uses(BTreeMap<Use, Location>);
+
+impl Uses {
+    /// Notes a use, at the first place that has it.
+    pub fn note(&mut self, found: Use, at: Location) {
+        let key = |at: Location| (at.file, at.line, at.column);
+        self.0.entry(found).and_modify(|first| *first = std::cmp::min_by_key(*first, at, |it| key(*it))).or_insert(at);
+    }
+
+    /// The first place that uses it.
+    pub fn first(&self, wanted: Use) -> Option<Location> {
+        let found = self.0.iter().filter(|it| wanted.covers(*it.0)).map(|it| *it.1);
+        found.min_by_key(|it| (it.file, it.line, it.column))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Use, Uses};
+    use staunch_runtime::{Class, Elementary, Location};
+
+    const fn at(line: u32) -> Location {
+        Location { file: 0, column: 1, line }
+    }
+
+    #[test]
+    fn a_class_has_the_uses_of_its_parts() {
+        let mut uses = Uses::default();
+        uses.note(Use::Operator("/", Class::Signed), at(7));
+        uses.note(Use::Operator("/", Class::Unsigned), at(4));
+        uses.note(Use::Conversion(Class::Real, Class::Signed), at(5));
+        uses.note(Use::Literal(Class::Real), at(6));
+        uses.note(Use::Type(Elementary::Time), at(9));
+        uses.note(Use::Type(Elementary::Time), at(8));
+        uses.note(Use::Function("LEFT"), at(2));
+        let found = |wanted| uses.first(wanted).map(|it| it.line);
+        assert_eq!(found(Use::Operator("/", Class::Int)), Some(4));
+        assert_eq!(found(Use::Operator("/", Class::Real)), None);
+        assert_eq!(found(Use::Operator("*", Class::Int)), None);
+        assert_eq!(found(Use::Conversion(Class::Real, Class::Int)), Some(5));
+        assert_eq!(found(Use::Conversion(Class::Int, Class::Real)), None);
+        assert_eq!(found(Use::Literal(Class::Num)), Some(6));
+        assert_eq!(found(Use::Literal(Class::Int)), None);
+        assert_eq!(found(Use::Type(Elementary::Time)), Some(8));
+        assert_eq!(found(Use::Type(Elementary::Ltime)), None);
+        assert_eq!(found(Use::Function("LEFT")), Some(2));
+        assert_eq!(found(Use::Function("RIGHT")), None);
+    }
+}
