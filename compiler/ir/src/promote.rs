@@ -7,14 +7,16 @@
 //!                                        state.i := i; state.sum := sum
 //! ```
 //!
-//! It applies to a loop that cannot fault, calls no routine and does not return: nobody sees the state before the loop has
-//! ended. A variable is taken if all that the loop touches is either this variable or, whatever indices and references
-//! are, another one. The counter of a loop that takes its turns before the first one stays where it is: a fault there
-//! shows the counter's first value.
+//! It applies to a loop that cannot fault, calls no routine, takes no address and does not return: nobody sees the state
+//! before the loop has ended. A variable is taken if all that the loop touches is either this variable or, whatever indices
+//! and references are, another one. The counter of a loop that takes its turns before the first one stays where it is: a
+//! fault there shows the counter's first value.
 //!
 //! A back end then has the variables in registers, where it would have to store them in each turn, since an element of an
 //! array, or what a reference leads to, might be the same storage. That an index is within its bounds is also known more
 //! often: a local counter is private to its loop.
+
+mod set_first;
 
 use crate::alias::{Alias, Frame, alias};
 use crate::effects::{Rules, statement_faults};
@@ -22,22 +24,29 @@ use crate::faults::code_faults;
 use crate::loops::{checked_locals, is_private};
 use crate::visit::{self, Access, Rewrite};
 use crate::{
-    Block, Const, Expr, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind,
-    Taking, Type, Value,
+    Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
+    StatementKind, Taking, Type, Value,
 };
+use set_first::is_set_first;
 use staunch_runtime::Repr;
 
-/// The program with such loops.
+/// A loop that touches more places than this stays: each is compared with each.
+const MOST_PLACES: usize = 128;
+/// Of one routine.
+const MOST_LOCALS: usize = 256;
+
+/// The program with such loops, where `suits` says of each statement of a loop that a back end gains by it.
 #[must_use]
-pub fn promoted(program: &Program) -> Program {
+pub fn promoted(program: &Program, suits: &dyn Fn(&Statement) -> bool) -> Program {
     let mut program = program.clone();
     for at in 0..program.routines.len() {
+        let checked = checked_locals(&program.routines[at]);
+        let mut body = std::mem::take(&mut program.routines[at].body);
         let mut routine = program.routines[at].clone();
-        let checked = checked_locals(&routine);
-        let mut body = std::mem::take(&mut routine.body);
-        Promoter { program: &program, routine: &mut routine, checked, around: Vec::new() }.block(&mut body);
-        routine.body = body;
-        program.routines[at] = routine;
+        let declared = routine.locals.len();
+        let around = Vec::new();
+        Promoter { program: &program, suits, routine: &mut routine, declared, checked, around }.block(&mut body);
+        program.routines[at] = Routine { body, ..routine };
     }
     program
 }
@@ -46,8 +55,11 @@ const RULES: Rules = Rules { operation_faults: code_faults, drops_checks: true, 
 
 struct Promoter<'p> {
     program: &'p Program,
+    suits: &'p dyn Fn(&Statement) -> bool,
     /// Without its body.
     routine: &'p mut Routine,
+    /// How many locals it had.
+    declared: usize,
     /// Of each local that was declared, whether its values are always within its subrange.
     checked: Vec<bool>,
     /// The private loops around, without their bodies.
@@ -59,6 +71,16 @@ struct Candidate {
     place: Place,
     local: LocalId,
     is_written: bool,
+}
+
+/// What a loop touches, each variable once.
+#[derive(Default)]
+struct Touched(Vec<Touch>);
+
+struct Touch {
+    place: Place,
+    is_written: bool,
+    is_borrowed: bool,
 }
 
 impl Promoter<'_> {
@@ -79,37 +101,93 @@ impl Promoter<'_> {
 
     /// Appends the loop with its variables in locals to `block`, if that can be.
     fn promote(&mut self, statement: &mut Statement, block: &mut Block) -> bool {
-        if !is_closed(statement) {
+        if !self.is_closed(statement) {
             return false;
         }
         let count = self.routine.locals.len();
         let candidates = self.candidates(statement);
-        if !candidates.iter().any(|it| it.is_written) {
-            return false;
-        }
-        let locals: Vec<Local> = candidates.iter().map(|it| self.local(&it.place)).collect();
-        self.routine.locals.extend(locals);
         let mut promoted = statement.clone();
-        let frame = Frame::of(self.program, self.routine);
-        in_locals(&frame, &mut promoted, &candidates);
-        if self.faults(&promoted) {
+        in_locals(&Frame::of(self.program, self.routine), &mut promoted, &candidates);
+        if !candidates.iter().any(|it| it.is_written) || self.faults(&promoted) {
             self.routine.locals.truncate(count);
             return false;
         }
         let at = statement.at;
-        let assign = |target, value| Statement::new(StatementKind::Assign { target, value }, at);
         for it in candidates.iter().filter(|it| !is_set_first(statement, &it.place)) {
-            block.push(assign(it.as_local(), Expr::load(it.place.clone(), at)));
+            block.push(Statement::assign(it.as_local(), Expr::load(it.place.clone(), at), at));
         }
         block.push(promoted);
         for it in candidates.iter().filter(|it| it.is_written) {
-            block.push(assign(it.place.clone(), Expr::load(it.as_local(), at)));
+            block.push(Statement::assign(it.place.clone(), Expr::load(it.as_local(), at), at));
         }
         true
     }
 
-    /// Named as the variable, or as the last member on the way to it.
-    fn local(&self, place: &Place) -> Local {
+    /// Whether nothing but its own statements runs in a loop, and it is left at its end alone.
+    fn is_closed(&self, statement: &Statement) -> bool {
+        let mut closed = true;
+        visit::statements(std::slice::from_ref(statement), &mut |it| {
+            closed = closed && is_plain(&it.kind) && (self.suits)(it);
+            visit::all_exprs(it, &mut |it| closed &= !matches!(it.kind, ExprKind::AddressOf(_)));
+        });
+        closed
+    }
+
+    /// The variables that the loop touches and nothing else in it can be, each with a local of its own.
+    fn candidates(&mut self, statement: &Statement) -> Vec<Candidate> {
+        let Some(Touched(touched)) = Touched::by(statement) else { return Vec::new() };
+        let stores_elements = touched.iter().any(|it| it.is_changed() && it.place.indices().next().is_some());
+        let frame = Frame::of(self.program, self.routine);
+        let is_taken = |(at, it): &(usize, &Touch)| {
+            // What is only read needs no copy, unless the loop stores what might be it.
+            let is_useful = it.is_written || stores_elements && !self.is_counter_around(&it.place);
+            let can_be = is_useful && !it.is_borrowed && self.is_scalar_variable(&it.place);
+            let is_apart =
+                |(other, of): (usize, &Touch)| other == *at || alias(&frame, &of.place, &it.place) == Alias::No;
+            can_be && !is_counter_of_turns(statement, &it.place) && touched.iter().enumerate().all(is_apart)
+        };
+        let taken: Vec<&Touch> = touched.iter().enumerate().filter(is_taken).map(|(_, it)| it).collect();
+        let mut candidates = Vec::new();
+        for it in taken {
+            if let Some(local) = self.local(&it.place, &candidates) {
+                candidates.push(Candidate { place: it.place.clone(), local, is_written: it.is_written });
+            }
+        }
+        candidates
+    }
+
+    /// Whether a back end has it in a register.
+    fn is_counter_around(&self, place: &Place) -> bool {
+        self.around.iter().any(|it| it.counter.is_same_variable(place))
+    }
+
+    fn is_scalar_variable(&self, place: &Place) -> bool {
+        let is_stored = match place.root {
+            Root::Instance | Root::Globals => !place.projections.is_empty(),
+            Root::Param(_) => true,
+            Root::Local(_) => false,
+        };
+        let is_named = place.projections.iter().all(|it| matches!(it, Projection::Field(_)));
+        is_stored && is_named && matches!(place.ty, Type::Elementary(_) | Type::Enum(_))
+    }
+
+    /// A local for a variable. Where a routine has many, they are those of loops before.
+    fn local(&mut self, place: &Place, taken: &[Candidate]) -> Option<LocalId> {
+        let (name, ty) = (self.name(place), place.ty);
+        let count = self.routine.locals.len();
+        if count < self.declared + MOST_LOCALS {
+            let zero = self.program.repr(ty).map_or(Value::Bool(false), Repr::zero);
+            self.routine.locals.push(Local { name, ty, initial: Const::Scalar(zero), doc: None });
+            return Some(LocalId::next(count));
+        }
+        (self.declared..count).map(LocalId::next).find(|id| {
+            let local = &self.routine.locals[id.index()];
+            local.name == name && local.ty == ty && !taken.iter().any(|it| it.local == *id)
+        })
+    }
+
+    /// As the variable, or as the last member on the way to it.
+    fn name(&self, place: &Place) -> String {
         let mut ty = Frame::of(self.program, self.routine).root_type(place.root);
         let mut name = match place.root {
             Root::Param(id) => self.routine.params[id.index()].name.clone(),
@@ -121,50 +199,7 @@ impl Promoter<'_> {
             }
             ty = ty.and_then(|it| self.program.part(it, projection));
         }
-        let zero = self.program.repr(place.ty).map_or(Value::Bool(false), Repr::zero);
-        Local { name, ty: place.ty, initial: Const::Scalar(zero), doc: None }
-    }
-
-    /// The variables that the loop touches and nothing else in it can be.
-    fn candidates(&self, statement: &Statement) -> Vec<Candidate> {
-        let frame = Frame::of(self.program, self.routine);
-        let mut touched: Vec<(Place, Access)> = Vec::new();
-        let mut see = |it: &Statement| visit::accesses(it, &mut |place, access| touched.push((place.clone(), access)));
-        visit::statements(std::slice::from_ref(statement), &mut see);
-        let stores_elements =
-            touched.iter().any(|(it, access)| *access != Access::Read && it.indices().next().is_some());
-        let mut candidates: Vec<Candidate> = Vec::new();
-        for (place, access) in &touched {
-            if let Some(known) = candidates.iter_mut().find(|it| it.place.is_same_variable(place)) {
-                known.is_written |= *access == Access::Write;
-                continue;
-            }
-            let is_apart = |(other, access): &(Place, Access)| {
-                let is_it = other.is_same_variable(place) && *access != Access::Borrow;
-                is_it || alias(&frame, other, place) == Alias::No
-            };
-            if self.is_scalar_variable(place) && !is_counter_of_turns(statement, place) && touched.iter().all(is_apart)
-            {
-                let local = LocalId::next(self.routine.locals.len() + candidates.len());
-                candidates.push(Candidate { place: place.clone(), local, is_written: *access == Access::Write });
-            }
-        }
-        // What is only read needs no copy, unless the loop stores what might be it.
-        candidates.retain(|it| it.is_written || stores_elements);
-        for (at, it) in candidates.iter_mut().enumerate() {
-            it.local = LocalId::next(self.routine.locals.len() + at);
-        }
-        candidates
-    }
-
-    fn is_scalar_variable(&self, place: &Place) -> bool {
-        let is_stored = match place.root {
-            Root::Instance | Root::Globals => !place.projections.is_empty(),
-            Root::Param(_) => true,
-            Root::Local(_) => false,
-        };
-        let is_named = place.projections.iter().all(|it| matches!(it, Projection::Field(_)));
-        is_stored && is_named && matches!(place.ty, Type::Elementary(_) | Type::Enum(_))
+        name
     }
 
     /// Whether the loop can fault after it has begun, or before by what its head evaluates.
@@ -181,6 +216,34 @@ impl Promoter<'_> {
     }
 }
 
+impl Touched {
+    /// `None` where there are too many.
+    fn by(statement: &Statement) -> Option<Self> {
+        let mut touched = Self::default();
+        let mut see = |it: &Statement| visit::accesses(it, &mut |place, access| touched.add(place, access));
+        visit::statements(std::slice::from_ref(statement), &mut see);
+        (touched.0.len() <= MOST_PLACES).then_some(touched)
+    }
+
+    fn add(&mut self, place: &Place, access: Access) {
+        if self.0.len() > MOST_PLACES {
+            return;
+        }
+        let at = self.0.iter().position(|it| it.place.is_same_variable(place)).unwrap_or(self.0.len());
+        if at == self.0.len() {
+            self.0.push(Touch { place: place.clone(), is_written: false, is_borrowed: false });
+        }
+        self.0[at].is_written |= access == Access::Write;
+        self.0[at].is_borrowed |= access == Access::Borrow;
+    }
+}
+
+impl Touch {
+    fn is_changed(&self) -> bool {
+        self.is_written || self.is_borrowed
+    }
+}
+
 impl Candidate {
     fn as_local(&self) -> Place {
         Place::local(self.local, self.place.ty)
@@ -191,42 +254,30 @@ fn is_loop(statement: &Statement) -> bool {
     matches!(statement.kind, StatementKind::For(_) | StatementKind::Loop { .. })
 }
 
-/// Whether nothing but its own statements runs in it, and it is left at its end alone.
-fn is_closed(statement: &Statement) -> bool {
-    let mut closed = true;
-    visit::statements(std::slice::from_ref(statement), &mut |it| {
-        closed &= match it.kind {
-            StatementKind::Assign { .. }
-            | StatementKind::If { .. }
-            | StatementKind::Case { .. }
-            | StatementKind::Loop { .. }
-            | StatementKind::For(_)
-            | StatementKind::Exit
-            | StatementKind::Continue
-            | StatementKind::CallBlock { .. } => true,
-            StatementKind::Try { .. }
-            | StatementKind::Turn
-            | StatementKind::Return
-            | StatementKind::Call { .. }
-            | StatementKind::External(_)
-            | StatementKind::PrescanBlock { .. }
-            | StatementKind::Fault(_) => false,
-        };
-    });
-    closed
+/// Whether a statement runs nothing that is elsewhere, and leaves no more than a loop.
+fn is_plain(kind: &StatementKind) -> bool {
+    match kind {
+        StatementKind::Assign { .. }
+        | StatementKind::If { .. }
+        | StatementKind::Case { .. }
+        | StatementKind::Loop { .. }
+        | StatementKind::For(_)
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::CallBlock { .. } => true,
+        StatementKind::Try { .. }
+        | StatementKind::Turn
+        | StatementKind::Return
+        | StatementKind::Call { .. }
+        | StatementKind::External(_)
+        | StatementKind::PrescanBlock { .. }
+        | StatementKind::Fault(_) => false,
+    }
 }
 
 /// Its counter, which a fault of taking turns shows at its first value.
 fn is_counter_of_turns(statement: &Statement, place: &Place) -> bool {
     matches!(&statement.kind, StatementKind::For(it) if it.taking.is_ahead() && it.counter.is_same_variable(place))
-}
-
-/// Whether the loop gives the variable a value before it reads it.
-fn is_set_first(statement: &Statement, place: &Place) -> bool {
-    let StatementKind::For(it) = &statement.kind else { return false };
-    let mut is_read = false;
-    visit::reads(&it.first, &mut |read| is_read |= read.is_same_variable(place));
-    it.counter.is_same_variable(place) && !is_read
 }
 
 fn private_head(statement: &Statement) -> Option<For> {

@@ -29,7 +29,7 @@ pub(crate) struct Emitted {
 
 /// Puts a whole program into `output`; a listing is added to where one is wanted.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
-    let program = &promoted(program);
+    let program = &promoted(program, &|_| true);
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
     let mut module = ModuleEmitter::new(program, effects(program, &RULES), output);
     module.listing = listing;

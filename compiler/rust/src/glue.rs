@@ -19,7 +19,7 @@ use crate::{Options, format};
 /// program that [`emit`](crate::emit) printed. `code` is the path of that text's module, `map`
 /// the program's map.
 pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) -> String {
-    let separated = alias::separate(&promoted(program));
+    let separated = alias::separate(&promoted(program, &|_| true));
     let emitter = Emitter::new(&separated.program, &separated.origins);
     let code: syn::Path = syn::parse_str(code).expect("the code's path is a Rust path");
     let runtime: syn::Path = syn::parse_str(&options.runtime).expect("the runtime's path is a Rust path");

@@ -117,7 +117,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
 
 /// Prints a verified program.
 pub fn emit(program: &Program, options: &Options) -> String {
-    let separated = alias::separate(&promoted(program));
+    let separated = alias::separate(&promoted(program, &|_| true));
     let mut emitter = Emitter::new(&separated.program, &separated.origins);
     // References find what they lead to by the whole layout.
     if options.state == State::Lean && !emitter.shared {

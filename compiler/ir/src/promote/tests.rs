@@ -38,7 +38,7 @@ fn step_total() -> Statement {
 fn pass(body: Block) -> Program {
     let before = sample(body);
     verify(&before).unwrap();
-    let after = promoted(&before);
+    let after = promoted(&before, &|_| true);
     verify(&after).unwrap();
     after
 }
