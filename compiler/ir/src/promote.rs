@@ -35,9 +35,24 @@ const MOST_PLACES: usize = 128;
 /// Of one routine.
 const MOST_LOCALS: usize = 256;
 
-/// The program with such loops, where `suits` says of each statement of a loop that a back end gains by it.
+/// What a back end gains by.
+#[expect(missing_debug_implementations, reason = "it holds a function, and lives for one question")]
+#[derive(Clone, Copy)]
+pub struct Gain<'a> {
+    /// Whether a statement may be in such a loop.
+    pub suits: &'a dyn Fn(&Statement) -> bool,
+    /// Whether variables are taken that the loop only reads, while it stores elements of arrays.
+    pub of_reads: bool,
+}
+
+impl Gain<'_> {
+    /// Of all that can be.
+    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true };
+}
+
+/// The program with such loops.
 #[must_use]
-pub fn promoted(program: &Program, suits: &dyn Fn(&Statement) -> bool) -> Program {
+pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
     let mut program = program.clone();
     for at in 0..program.routines.len() {
         let checked = checked_locals(&program.routines[at]);
@@ -45,7 +60,7 @@ pub fn promoted(program: &Program, suits: &dyn Fn(&Statement) -> bool) -> Progra
         let mut routine = program.routines[at].clone();
         let declared = routine.locals.len();
         let around = Vec::new();
-        Promoter { program: &program, suits, routine: &mut routine, declared, checked, around }.block(&mut body);
+        Promoter { program: &program, gain, routine: &mut routine, declared, checked, around }.block(&mut body);
         program.routines[at] = Routine { body, ..routine };
     }
     program
@@ -55,7 +70,7 @@ const RULES: Rules = Rules { operation_faults: code_faults, drops_checks: true, 
 
 struct Promoter<'p> {
     program: &'p Program,
-    suits: &'p dyn Fn(&Statement) -> bool,
+    gain: Gain<'p>,
     /// Without its body.
     routine: &'p mut Routine,
     /// How many locals it had.
@@ -127,7 +142,7 @@ impl Promoter<'_> {
     fn is_closed(&self, statement: &Statement) -> bool {
         let mut closed = true;
         visit::statements(std::slice::from_ref(statement), &mut |it| {
-            closed = closed && is_plain(&it.kind) && (self.suits)(it);
+            closed = closed && is_plain(&it.kind) && (self.gain.suits)(it);
             visit::all_exprs(it, &mut |it| closed &= !matches!(it.kind, ExprKind::AddressOf(_)));
         });
         closed
@@ -136,11 +151,11 @@ impl Promoter<'_> {
     /// The variables that the loop touches and nothing else in it can be, each with a local of its own.
     fn candidates(&mut self, statement: &Statement) -> Vec<Candidate> {
         let Some(Touched(touched)) = Touched::by(statement) else { return Vec::new() };
-        let stores_elements = touched.iter().any(|it| it.is_changed() && it.place.indices().next().is_some());
+        let stores_element = |it: &Touch| it.is_changed() && it.place.indices().next().is_some();
+        let takes_reads = self.gain.of_reads && touched.iter().any(stores_element);
         let frame = Frame::of(self.program, self.routine);
         let is_taken = |(at, it): &(usize, &Touch)| {
-            // What is only read needs no copy, unless the loop stores what might be it.
-            let is_useful = it.is_written || stores_elements && !self.is_counter_around(&it.place);
+            let is_useful = it.is_written || takes_reads && !self.is_counter_around(&it.place);
             let can_be = is_useful && !it.is_borrowed && self.is_scalar_variable(&it.place);
             let is_apart =
                 |(other, of): (usize, &Touch)| other == *at || alias(&frame, &of.place, &it.place) == Alias::No;

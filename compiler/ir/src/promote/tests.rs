@@ -1,6 +1,6 @@
 //! Which loops keep their variables in locals.
 
-use super::promoted;
+use super::{Gain, promoted};
 use crate::fixture::{
     AT, assign, call_adder, call_counter, count, counter, int, load, sample, stmt, temp, total, value, wide,
 };
@@ -38,7 +38,7 @@ fn step_total() -> Statement {
 fn pass(body: Block) -> Program {
     let before = sample(body);
     verify(&before).unwrap();
-    let after = promoted(&before, &|_| true);
+    let after = promoted(&before, Gain::WHOLE);
     verify(&after).unwrap();
     after
 }
