@@ -1,13 +1,13 @@
 //! Which loops keep their variables in locals.
 
-use super::{Gain, promoted};
+use super::{Gain, MOST_LOCALS, promoted};
 use crate::fixture::{
     AT, assign, call_adder, call_counter, count, counter, int, load, sample, stmt, temp, total, value, wide,
 };
 use crate::verify::verify;
 use crate::{
-    Block, Conversion, Elementary, Expr, FieldId, For, Op, Place, Program, Root, Statement, StatementKind, Step,
-    Taking, Type, Value,
+    Block, Conversion, Elementary, Expr, ExprKind, FieldId, For, Op, Place, Program, Root, Statement, StatementKind,
+    Step, Taking, Type, Value,
 };
 
 const MAIN: usize = 3;
@@ -111,4 +111,50 @@ fn an_inner_loop_is_taken_where_the_outer_one_stays() {
     let after = pass(vec![outer]);
     let StatementKind::If { then, .. } = &after.routines[MAIN].body[0].kind else { panic!("it is still an IF") };
     assert_eq!(then.len(), 5);
+}
+
+/// `temp := ADR(total)`, as far as the pass knows.
+#[test]
+fn a_loop_that_takes_an_address_stays() {
+    let way = Expr { ty: Type::INT, kind: ExprKind::AddressOf(Box::new(total())), at: AT };
+    let program = sample(vec![count_to(3, vec![assign(temp(), way), step_total()])]);
+    assert_eq!(kinds(&promoted(&program, Gain::WHOLE)), ["for"]);
+}
+
+#[test]
+fn what_is_set_first_is_not_loaded() {
+    let clear = || assign(total(), dint(0));
+    assert_eq!(kinds(&pass(vec![count_to(3, vec![clear(), step_total()])])), ["for of a local", "store", "store"]);
+    let none = pass(vec![count_to(0, vec![clear(), step_total()])]);
+    assert_eq!(kinds(&none), ["load", "for of a local", "store", "store"], "no turn sets it");
+    let leave = || stmt(StatementKind::Exit);
+    let if_true =
+        |then: Block, otherwise: Block| stmt(StatementKind::If { condition: Expr::bool(true, AT), then, otherwise });
+    for (first, loads) in [
+        (if_true(vec![clear()], vec![clear()]), false),
+        (if_true(vec![clear()], Vec::new()), true),
+        (if_true(vec![leave()], Vec::new()), true),
+        (if_true(vec![clear(), leave()], vec![clear()]), false),
+    ] {
+        let found = kinds(&pass(vec![count_to(3, vec![first.clone(), clear()])]));
+        assert_eq!(found[0] == "load", loads, "{first:?}");
+    }
+}
+
+#[test]
+fn a_back_end_says_what_it_gains_by() {
+    let body = || vec![count_to(3, vec![assign(element(count()), load(wide())), step_total()])];
+    let of = |gain| promoted(&sample(body()), gain).routines[MAIN].locals.len();
+    assert_eq!(of(Gain::WHOLE), of(Gain { of_reads: false, ..Gain::WHOLE }) + 1);
+    let nothing = Gain { suits: &|it| !matches!(it.kind, StatementKind::Assign { .. }), of_reads: true };
+    assert_eq!(kinds(&promoted(&sample(body()), nothing)), ["for"]);
+}
+
+/// The locals of loops before are used again.
+#[test]
+fn a_routine_gets_so_many_locals() {
+    let after = pass(vec![count_to(3, vec![step_total()]); 2 * MOST_LOCALS]);
+    let locals = after.routines[MAIN].locals.len();
+    assert_eq!(locals, sample(Vec::new()).routines[MAIN].locals.len() + MOST_LOCALS);
+    assert!(kinds(&after).iter().all(|it| *it != "for"));
 }
