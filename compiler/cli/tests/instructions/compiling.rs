@@ -3,7 +3,7 @@
 //!
 //! It is the command that the tests have, of their profile: a release takes a tenth of that, but what makes one slower makes the
 //! other slower too. It runs in a folder of its own, without an environment, on files of fixed names, so that the checkout's
-//! path does not count. Counts vary by less than 0.1 %, by the seeds of hash tables and of the allocator.
+//! path does not count. Counts vary by less than 0.2 %, by the seeds of hash tables and of the allocator.
 
 use crate::measure::{ONE_MEMCPY, succeeds};
 use crate::root;
