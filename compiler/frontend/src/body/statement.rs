@@ -214,7 +214,6 @@ impl<'s> Checker<'_, 's> {
             self.check_binding(target, value)?;
             self.note_binding(target, value);
         }
-        self.note_stored(value);
         self.assigned(std::slice::from_ref(target), value, span, false).map(drop)
     }
 

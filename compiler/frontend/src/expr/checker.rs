@@ -53,8 +53,6 @@ pub(crate) struct Checker<'d, 's> {
     pub may_not_run: bool,
     /// Where an ENO of the innermost call with one leads, while the call's arguments are evaluated.
     pub late: Option<LateTarget<'s>>,
-    /// Operators of the assignment that is checked, of whose results only what is stored matters.
-    pub stored: Vec<Span>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
     /// Where the BOOLs are written that are counted, by what they have of that in the IR.
@@ -106,7 +104,6 @@ impl<'d, 's> Checker<'d, 's> {
             choices: FxHashMap::default(),
             left_out: None,
             may_not_run: false,
-            stored: Vec::new(),
             late: None,
             is_covered: false,
             written: FxHashMap::default(),

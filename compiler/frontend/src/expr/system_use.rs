@@ -2,10 +2,7 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
-use super::operator::{Sides, compares};
 use crate::Span;
-use crate::ast::{self, BinaryOp};
-use crate::types::coercion::is_narrow;
 use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Use};
 use staunch_runtime::Class;
 
@@ -18,34 +15,6 @@ impl Checker<'_, '_> {
     pub(super) fn note_operator(&mut self, text: &'static str, operands: &[&Operand], span: Span) {
         for class in operands.iter().filter_map(|it| class_of(it)) {
             self.note_use(Use::Operator(text, class), span);
-        }
-    }
-
-    /// A number without a type that is an operand; an integer, beside one of fewer bits than 32, or another literal. It makes
-    /// no difference where a wider type would give the same: to what is compared with it, and to a sum, difference or product
-    /// that is stored in the type of the other operand.
-    pub(super) fn note_literals(&mut self, sides: &Sides) {
-        let Sides { a, b, op, op_span, hint, .. } = sides;
-        let is_wide = |it: &Operand| matches!(it.ty(), Some(Type::Elementary(ty)) if !is_narrow(ty));
-        let is_same = |it: &Operand| {
-            compares(*op) || it.ty().is_some_and(|ty| Some(ty) == hint.map(Type::read)) && self.stored.contains(op_span)
-        };
-        let counts =
-            |it: &Operand, other: &Operand| !matches!(it, Operand::Integer(_)) || !is_wide(other) && !is_same(other);
-        let found = [(a, b), (b, a)]
-            .map(|(literal, other)| class_of(literal).filter(|_| literal.typed().is_none() && counts(literal, other)));
-        found.into_iter().flatten().for_each(|it| self.note_use(Use::Literal(it), *op_span));
-    }
-
-    /// Notes which operators of an assignment make no more than what is stored, by their low bits.
-    pub(crate) fn note_stored(&mut self, value: &ast::Expr<'_>) {
-        self.stored.clear();
-        let mut open = vec![value.bare()];
-        while let Some(expr) = open.pop() {
-            if let ast::ExprKind::Binary(sides, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul, span) = &expr.kind {
-                self.stored.push(*span);
-                open.extend(sides.iter().map(ast::Expr::bare));
-            }
         }
     }
 
