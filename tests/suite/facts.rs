@@ -26,7 +26,7 @@ fn openplc_computes_as_matiec() {
 
 #[test]
 fn openplc4_computes_as_strucpp() {
-    holds("strucpp.tsv", Dialect::Openplc4, 2000);
+    holds("strucpp.tsv", Dialect::Openplc4, 6000);
 }
 
 struct Fact<'t> {

@@ -50,6 +50,21 @@ fn strings_are_counted_and_used_again() {
     compare(&program(9), "concatenations");
 }
 
+/// Their variables are in locals of the routine while they run.
+#[test]
+fn many_loops_take_no_more_than_is_said() {
+    let line =
+        |at: usize| format!("FOR i{at} := 1 TO 9 DO v[i{at}] := s{at}; s{at} := s{at} + v[i{at}] * 2; END_FOR\n");
+    let text = |loops: usize| {
+        let declared: String = (0..loops).map(|at| format!("i{at}, s{at} : INT;\n")).collect();
+        let statements: String = (0..loops).map(line).collect();
+        format!("PROGRAM Main\nVAR v : ARRAY[1..9] OF INT;\n{declared}END_VAR\n{statements}END_PROGRAM\n")
+    };
+    for loops in [1, 600] {
+        compare(&compile(text(loops)).unwrap(), &format!("{loops} loops"));
+    }
+}
+
 fn compile(text: String) -> Option<Program> {
     let mut sources = Sources::default();
     sources.add(Source::new("program.st", text));

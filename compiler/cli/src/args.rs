@@ -323,10 +323,12 @@ pub struct Compare {
     /// Scans that the search may take in all
     #[arg(long, value_name = "N", default_value_t = 8_000_000)]
     pub budget: u64,
-    /// Findings that are accepted, a line each: parts 2: nobody reads the count past 50
+    /// Findings that the plant lives with, a line each: a counter, the trap and the reason, as `parts 2: nobody reads the
+    /// count past 50`. An output that differs by one needs its own line: `motor output: not wired`
     #[arg(long, value_name = "FILE", conflicts_with = "stimulus")]
     pub accept: Option<PathBuf>,
-    /// What the inputs never do, a line each: Target 1..500; not (Start and Stop); Part for at least 3 scans
+    /// What the inputs never do, a line each: `Target 1..500`, `not (Start and Stop)`, `Part for at least 3 scans`, `no run`. The
+    /// verdict holds as far as they do
     #[arg(long, value_name = "FILE")]
     pub assume: Option<PathBuf>,
     /// Write the inputs that make a difference as a stimulus

@@ -73,11 +73,12 @@ const RISING: &str = "VAR_INPUT sensor, clear : BOOL; END_VAR VAR full, over : B
 fn scratch() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_advice");
     std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    // What CODESYS and Siemens leave open is decided: the advice is for a CTU that goes on past its preset.
+    // What is left open is decided: the advice is for a CTU of CODESYS and Siemens that goes on past its preset, a CTD of S7
+    // that loads while LD is TRUE, and an Editor of OpenPLC that counts CD as it falls.
     static DECIDED: std::sync::Once = std::sync::Once::new();
     DECIDED.call_once(|| {
-        std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\ns7-ld = \"level\"\n")
-            .expect("a project file");
+        let decided = "ctu-stop-at-pv = false\ns7-ld = \"level\"\nopenplc4-cd-edge = \"falling\"\n";
+        std::fs::write(folder.join("staunch.toml"), decided).expect("a project file");
     });
     folder
 }

@@ -381,3 +381,43 @@ END_PROGRAM
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("+ c.PRE := 3; CTU(c, x);") && text.contains("codesys and logix differ after"), "{text}");
 }
+
+/// An input called `En` of a PROGRAM stops nothing on any system: `lamp` follows it. Of a FUNCTION_BLOCK without ENO it stops the body
+/// on IEC and OPENPLC, and is an ordinary input on S7, CSCAPE and OPENPLC4: `Off` is TRUE there.
+#[test]
+fn an_input_called_en_is_what_it_is_on_each_system() {
+    let program = "PROGRAM p
+VAR_INPUT En, part : BOOL; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(CU := part, PV := 2);
+lamp := En AND c.Q;
+END_PROGRAM
+";
+    let block = "FUNCTION_BLOCK Pump
+VAR_INPUT En : BOOL; END_VAR
+VAR_OUTPUT Off : BOOL; END_VAR
+Off := NOT En;
+END_FUNCTION_BLOCK
+PROGRAM p
+VAR_INPUT on : BOOL; END_VAR
+VAR pump : Pump; END_VAR
+VAR_OUTPUT off : BOOL; END_VAR
+pump(En := on);
+off := pump.Off;
+END_PROGRAM
+";
+    let spelled = [program.to_owned(), program.replace("En", "EN")];
+    for (number, source) in spelled.iter().enumerate() {
+        for to in ["siemens", "openplc", "openplc4"] {
+            let name = format!("en_program_{number}_{to}");
+            let (code, text) = compare(&name, source, &["--from", "iec", "--to", to, "--vars", "lamp"]);
+            assert_eq!(code, Some(0), "{name}: {text}");
+        }
+    }
+    for (to, expected) in [("openplc", 0), ("siemens", 1), ("cscape", 1), ("openplc4", 1)] {
+        let (code, text) = compare(&format!("en_block_{to}"), block, &["--from", "iec", "--to", to, "--vars", "off"]);
+        assert_eq!(code, Some(expected), "{to}: {text}");
+        assert!(expected == 0 || text.starts_with(&format!("iec and {to} differ after 1 scan:")), "{text}");
+    }
+}

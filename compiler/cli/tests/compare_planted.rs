@@ -149,7 +149,13 @@ fn found(planted: &Planted) -> Option<usize> {
 }
 
 fn count(all: &[Planted]) -> (usize, usize) {
-    let scans: Vec<_> = all.iter().map(|it| (it, found(it))).collect();
+    // Each compares by itself: as many at a time as there are processors.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let scans: Vec<_> = std::thread::scope(|scope| {
+        let part = |first: usize| all.iter().skip(first).step_by(threads).map(|it| (it, found(it))).collect::<Vec<_>>();
+        let parts: Vec<_> = (0..threads).map(|first| scope.spawn(move || part(first))).collect();
+        parts.into_iter().flat_map(|it| it.join().expect("no comparison panics")).collect()
+    });
     for (planted, scans) in &scans {
         match scans {
             None => println!("{}: not found, planted at {}", planted.name, planted.depth),

@@ -28,6 +28,14 @@ pub fn op_faults(program: &Program, op: Op, operands: &[Expr]) -> bool {
     op.can_fault() && !(real && matches!(op, Op::Div))
 }
 
+/// Whether code for the operation has a way to a fault: a division by a constant has none.
+pub fn code_faults(program: &Program, op: Op, operands: &[Expr]) -> bool {
+    let is_real = || operands.first().and_then(|it| program.repr(it.ty)).is_some_and(Repr::is_float);
+    let divisor = || operands.get(1).and_then(Expr::as_const);
+    let is_safe = || is_real() || divisor().is_some_and(|it| it.as_integer() != Some(0));
+    op.can_fault() && !(matches!(op, Op::Div | Op::Mod) && is_safe())
+}
+
 /// Whether a projection can fault. An index that is a constant has been checked.
 pub fn projection_faults(program: &Program, projection: &Projection) -> bool {
     plain(program).projection(projection, None)

@@ -14,8 +14,6 @@ pub enum Use {
     Operator(&'static str, Class),
     /// From one class to another, by a function or by itself.
     Conversion(Class, Class),
-    /// An operand that is a number without a type's name.
-    Literal(Class),
 }
 
 impl Use {
@@ -26,7 +24,6 @@ impl Use {
             Self::Function(name) => name.to_owned(),
             Self::Operator(operator, class) => format!("`{operator}` of {}", class.name()),
             Self::Conversion(from, to) => format!("{} to {}", from.name(), to.name()),
-            Self::Literal(class) => format!("an operand of {} without a type", class.name()),
         }
     }
 
@@ -35,9 +32,8 @@ impl Use {
         match (self, found) {
             (Self::Operator(own, class), Self::Operator(other, of)) => own == other && class.contains(of),
             (Self::Conversion(from, to), Self::Conversion(own, other)) => from.contains(own) && to.contains(other),
-            (Self::Literal(class), Self::Literal(of)) => class.contains(of),
             (Self::Type(_) | Self::Function(_), _) => self == found,
-            (Self::Operator(..) | Self::Conversion(..) | Self::Literal(_), _) => false,
+            (Self::Operator(..) | Self::Conversion(..), _) => false,
         }
     }
 }
@@ -75,7 +71,6 @@ mod tests {
         uses.note(Use::Operator("/", Class::Signed), at(7));
         uses.note(Use::Operator("/", Class::Unsigned), at(4));
         uses.note(Use::Conversion(Class::Real, Class::Signed), at(5));
-        uses.note(Use::Literal(Class::Real), at(6));
         uses.note(Use::Type(Elementary::Time), at(9));
         uses.note(Use::Type(Elementary::Time), at(8));
         uses.note(Use::Function("LEFT"), at(2));
@@ -85,8 +80,6 @@ mod tests {
         assert_eq!(found(Use::Operator("*", Class::Int)), None);
         assert_eq!(found(Use::Conversion(Class::Real, Class::Int)), Some(5));
         assert_eq!(found(Use::Conversion(Class::Int, Class::Real)), None);
-        assert_eq!(found(Use::Literal(Class::Num)), Some(6));
-        assert_eq!(found(Use::Literal(Class::Int)), None);
         assert_eq!(found(Use::Type(Elementary::Time)), Some(8));
         assert_eq!(found(Use::Type(Elementary::Ltime)), None);
         assert_eq!(found(Use::Function("LEFT")), Some(2));

@@ -62,8 +62,13 @@ fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
         StatementKind::PrescanBlock { block: place, .. } | StatementKind::Try { kind: place, .. } => {
             rewrite_place(place, by)
         }
-        StatementKind::Loop { .. }
-        | StatementKind::Turn
+        StatementKind::Loop { count, .. } => {
+            if let Some(it) = count {
+                rewrite_place(&mut it.counter, by);
+                rewrite_expr(&mut it.bound, by);
+            }
+        }
+        StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return

@@ -20,6 +20,8 @@ pub(crate) struct Running<'p> {
     pub(crate) at: Location,
     /// The counter, beside its storage, where nothing but the loop writes it.
     pub(crate) register: Option<Variable>,
+    /// The storage, where it is a variable too: it is given the counter when the loop has ended.
+    pub(crate) late: Option<Variable>,
     /// What is not constant.
     pub(crate) last: Option<clif::Value>,
     pub(crate) step: Option<clif::Value>,

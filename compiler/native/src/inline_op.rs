@@ -54,15 +54,6 @@ pub(crate) fn repr(program: &Program, op: Op, operands: &[Expr]) -> Repr {
     repr.expect("verified IR: operands have the operation's repr")
 }
 
-/// Whether code for the operation has a way to a fault.
-pub(crate) fn may_fault(program: &Program, op: Op, operands: &[Expr]) -> bool {
-    let is_division = matches!(op, Op::Div | Op::Mod);
-    let is_safe = is_division
-        && (repr(program, op, operands).is_float()
-            || operands[1].as_const().is_some_and(|divisor| divisor.as_integer() != Some(0)));
-    op.can_fault() && !is_safe
-}
-
 fn add(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (a, b) = (o.values[0], o.values[1]);
     if o.repr.is_float() { f.ins().fadd(a, b) } else { f.ins().iadd(a, b) }

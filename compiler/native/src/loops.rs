@@ -2,12 +2,13 @@
 //! its end, so that a turn costs one branch.
 
 use crate::control::{Control, Known, Running};
-use crate::function::{Flow, Function, LoopFrame};
+use crate::function::{Flow, Function, LocalSlot, LoopFrame};
 use crate::place::PlaceValue;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
+use cranelift_frontend::Variable;
 use staunch_ir::loops::{exit_condition, running};
-use staunch_ir::{Block, Count, Expr, ExprKind, FaultKind, For, Location, Repr, Statement, Step, Value};
+use staunch_ir::{Block, Count, Expr, ExprKind, FaultKind, For, Location, Place, Repr, Root, Statement, Step, Value};
 
 /// Conditions of more operations than this are there once, and the loop's end jumps to them.
 const SMALL: usize = 8;
@@ -34,9 +35,14 @@ impl<'p> Function<'_, 'p> {
             self.registers.push(register);
         }
         let flow = self.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]);
-        if running.register.is_some() {
+        if let Some(register) = running.register {
             self.registers.pop();
             self.counters.pop();
+            if let Some(late) = running.late.filter(|_| flow == Flow::Continues) {
+                let counter = self.builder.use_var(register);
+                let counter = self.narrowed(running.repr, counter);
+                self.builder.def_var(late, counter);
+            }
         }
         self.close_turns(opens, flow)
     }
@@ -53,14 +59,26 @@ impl<'p> Function<'_, 'p> {
             let is_zero = self.ins().icmp_imm_u(IntCC::Equal, step, 0);
             self.fault_if(is_zero, FaultKind::ZeroStep, it.step_at);
         }
-        let mut running = Running { it, repr, at, register: None, last, step };
+        let mut running = Running { it, repr, at, register: None, late: None, last, step };
         if it.is_private {
             let value = self.counter_value(&running);
             let register = self.builder.declare_var(types::I64);
             self.builder.def_var(register, value);
             running.register = Some(register);
+            running.late = self.late(&it.counter);
         }
         running
+    }
+
+    /// The variable of a counter that is in a register while the loop runs, if nobody reads it on ways that leave the
+    /// loop and all around: RETURN reads the result, and what handles a fault reads any.
+    fn late(&self, counter: &Place) -> Option<Variable> {
+        let Root::Local(id) = counter.root else { return None };
+        let is_read = self.module.handles_faults || self.routine.result == Some(id);
+        match self.locals[id.index()] {
+            LocalSlot::Variable(variable) if counter.projections.is_empty() && !is_read => Some(variable),
+            LocalSlot::Variable(_) | LocalSlot::Slot(_) => None,
+        }
     }
 
     pub(crate) fn wide_scalar(&mut self, repr: Repr, value: &Expr) -> clif::Value {
@@ -170,6 +188,9 @@ impl<'p> Function<'_, 'p> {
         };
         if let Some(register) = running.register {
             self.builder.def_var(register, value);
+        }
+        if running.late.is_some() {
+            return;
         }
         match self.place_value(&running.it.counter) {
             PlaceValue::Variable(variable) => {

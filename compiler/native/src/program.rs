@@ -6,12 +6,14 @@ use crate::{Error, entry, function, inline_block, inline_op};
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::Module;
 use staunch_ir::effects::{Rules, effects};
-use staunch_ir::{Program, RoutineId};
+use staunch_ir::faults::code_faults;
+use staunch_ir::promote::{Gain, promoted};
+use staunch_ir::{Expr, ExprKind, Program, RoutineId, Statement, StatementKind, Type, visit};
 
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
     block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
-    operation_faults: inline_op::may_fault,
+    operation_faults: code_faults,
     drops_checks: true,
     scans_take_all: false,
 };
@@ -27,6 +29,7 @@ pub(crate) struct Emitted {
 
 /// Puts a whole program into `output`; a listing is added to where one is wanted.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
+    let program = &promoted(program, Gain { suits: &is_in_line, of_reads: false });
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
     let mut module = ModuleEmitter::new(program, effects(program, &RULES), output);
     module.listing = listing;
@@ -38,4 +41,22 @@ pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<S
     let entry_points = entry::emit(&mut module, &mut workspace)?;
     module.define_constants()?;
     Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), frames })
+}
+
+/// Whether the code for a statement calls nothing of the runtime's, which would find what is in registers in the frame. What a
+/// loop only reads is an operand in memory.
+fn is_in_line(statement: &Statement) -> bool {
+    let mut is_called = match &statement.kind {
+        StatementKind::CallBlock { block, instruction, .. } => inline_block::find(block, *instruction).is_none(),
+        _ => false,
+    };
+    visit::all_exprs(statement, &mut |it: &Expr| {
+        is_called |= match &it.kind {
+            ExprKind::Apply(op, _) => inline_op::find(*op).is_none(),
+            ExprKind::ApplyText(..) => true,
+            ExprKind::Load(_) | ExprKind::Convert(..) => matches!(it.ty, Type::String(_)),
+            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::AddressOf(_) => false,
+        };
+    });
+    !is_called
 }

@@ -7,6 +7,7 @@ use std::iter;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use staunch_ir::layout::usize_of;
+use staunch_ir::promote::{Gain, promoted};
 use staunch_ir::{Program, RoutineId, Type};
 
 use crate::alias;
@@ -18,7 +19,7 @@ use crate::{Options, format};
 /// program that [`emit`](crate::emit) printed. `code` is the path of that text's module, `map`
 /// the program's map.
 pub fn emit_glue(program: &Program, code: &str, map: &str, options: &Options) -> String {
-    let separated = alias::separate(program);
+    let separated = alias::separate(&promoted(program, Gain::WHOLE));
     let emitter = Emitter::new(&separated.program, &separated.origins);
     let code: syn::Path = syn::parse_str(code).expect("the code's path is a Rust path");
     let runtime: syn::Path = syn::parse_str(&options.runtime).expect("the runtime's path is a Rust path");

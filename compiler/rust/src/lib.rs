@@ -42,6 +42,7 @@ mod layout_asserts;
 
 use quote::quote;
 use staunch_ir::Program;
+use staunch_ir::promote::{Gain, promoted};
 
 use emitter::Emitter;
 
@@ -116,7 +117,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
 
 /// Prints a verified program.
 pub fn emit(program: &Program, options: &Options) -> String {
-    let separated = alias::separate(program);
+    let separated = alias::separate(&promoted(program, Gain::WHOLE));
     let mut emitter = Emitter::new(&separated.program, &separated.origins);
     // References find what they lead to by the whole layout.
     if options.state == State::Lean && !emitter.shared {

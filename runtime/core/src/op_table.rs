@@ -53,6 +53,8 @@ macro_rules! for_each_op {
             TimeTimes   "_TIME_MUL" time_times (IN: T, BY: LREAL) -> LINT            [ANY_INT as long]            total;
             TimeOver    "_TIME_DIV" time_over (IN: T, BY: LREAL) -> LINT             [ANY_INT as long]            total;
             LimitLow    "_LIMIT_LOW" limit_low_first (MN: T, IN: T, MX: T) -> T      [ANY_ELEMENTARY as any]      total;
+            // LIMIT of OpenPLC from v4.1 on.
+            LimitFirst  "_LIMIT_FIRST" limit_first (MN: T, IN: T, MX: T) -> T        [ANY_ELEMENTARY as any]      total;
             // LIMIT on S7.
             LimitInOrder "_LIMIT_IN" limit_in_order (MN: T, IN: T, MX: T) -> T       [ANY_ELEMENTARY as any]      total;
             TimePlus    "_TIME_ADD" time_plus (IN1: T, IN2: T) -> T                  [ANY_INT as long]            total;
@@ -179,6 +181,17 @@ macro_rules! for_each_text_op {
             ToBoolWord   "_TO_BOOL_WORD" to_bool_word (IN: STRING) -> BOOL [one];
             ToLintBack   "_TO_LINT_BACK" to_lint_back (IN: STRING) -> LINT [one];
             ToLrealDot   "_TO_LREAL_DOT" to_lreal_dot (IN: STRING) -> LREAL [one];
+            // Those of OpenPLC from v4.1 on.
+            LeftOrAll    "_LEFT_OR_ALL" left_or_all (IN: ANY_STRING, L: ANY_INT) -> ANY_STRING [each];
+            RightOrAll   "_RIGHT_OR_ALL" right_or_all (IN: ANY_STRING, L: ANY_INT) -> ANY_STRING [each];
+            MidWithin    "_MID_WITHIN" mid_within (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            InsertBefore "_INSERT_BEFORE" insert_before (IN1: ANY_STRING, IN2: ANY_STRING, P: ANY_INT) -> ANY_STRING [each];
+            DeleteWithin "_DELETE_WITHIN" delete_within (IN: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            ReplaceWithin "_REPLACE_WITHIN" replace_within (IN1: ANY_STRING, IN2: ANY_STRING, L: ANY_INT, P: ANY_INT) -> ANY_STRING [each];
+            FromShort    "_FROM_SHORT" from_short (IN: LREAL) -> STRING [one];
+            ToBoolLetter "_TO_BOOL_LETTER" to_bool_letter (IN: STRING) -> BOOL [one];
+            ToLintFront  "_TO_LINT_FRONT" to_lint_front (IN: STRING) -> LINT [one];
+            ToUlintFront "_TO_ULINT_FRONT" to_ulint_front (IN: STRING) -> ULINT [one];
             // Text of values, and values of text.
             FromBool     "_FROM_BOOL"  from_bool  (IN: BOOL) -> STRING [one];
             FromLint     "_FROM_LINT"  from_lint  (IN: LINT) -> STRING [one];

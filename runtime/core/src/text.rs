@@ -6,12 +6,15 @@
 mod conversion;
 mod matiec;
 mod string_type;
+mod strucpp;
 mod unit;
 
 pub use crate::utf16;
 pub use conversion::*;
+use matiec::general;
 pub use matiec::*;
 pub use string_type::StringType;
+pub use strucpp::*;
 pub use unit::{Unit, characters, utf16_length, utf16_units};
 
 use core::fmt;

@@ -77,14 +77,18 @@ impl Main {
     /// One scan.
     pub fn scan(&mut self, _cx: &Context) -> Result<(), Fault> {
         self.total = 0; // :9
-        self.i = 1; // :10
-        while self.i <= 8 {
-            let i = self.i;
+        let pulse: bool = self.pulse; // :10
+        let reset: bool = self.reset;
+        let mut total: i16 = self.total;
+        let mut i: i16 = 1;
+        while i <= 8 {
             let i_index = ops::index(i64::from(i), 1, 8).at(COUNTED_LOOP_ST, 11, 11)?;
-            self.parts[i_index].call(self.pulse, self.reset, 10); // :11
-            self.total = self.total.wrapping_add(self.parts[i_index].cv); // :12
-            self.i = self.i.wrapping_add(1);
+            self.parts[i_index].call(pulse, reset, 10); // :11
+            total = total.wrapping_add(self.parts[i_index].cv); // :12
+            i = i.wrapping_add(1);
         }
+        self.i = i; // :10
+        self.total = total;
         Ok(())
     }
 }

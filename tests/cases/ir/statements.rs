@@ -121,16 +121,17 @@ impl Main {
                 self.sum = -1;
             }
         }
-        self.i = 1; // :17
-        while self.i <= 3 {
-            let i = self.i;
-            self.sum = self
-                .sum
+        let mut sum: i32 = self.sum; // :17
+        let mut i: i32 = 1;
+        while i <= 3 {
+            sum = sum
                 .wrapping_add(
                     self.a[ops::index(i64::from(i), 1, 3).at(STATEMENTS_ST, 17, 35)?],
                 );
-            self.i = self.i.wrapping_add(1);
+            i = i.wrapping_add(1);
         }
+        self.i = i;
+        self.sum = sum;
         strips!(32; while (self.sum > 100) {
             // :18
             cx.take_turn().at(STATEMENTS_ST, 18, 1)?;

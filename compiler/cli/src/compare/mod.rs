@@ -154,6 +154,7 @@ fn side_by_side(
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
     check_compared(&pair, args, &only)?;
+    pair.settle_counts();
     let uses = pitfall::uses(&pair);
     let mut findings = Findings::new(&pair, &world, &uses, renamed);
     let accepted = args.accept.as_deref().map(Accepted::read).transpose()?.unwrap_or_default();

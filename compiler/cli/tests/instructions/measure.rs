@@ -2,15 +2,15 @@
 
 use crate::driver;
 use crate::subject::{self, Subject};
-use crate::table::FIGURES;
+use crate::table::Measured;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Mutex;
 
-/// The figures of a program, by the columns of the table.
-pub type Measured = [Option<u64>; FIGURES.len()];
+/// One memcpy for all processors.
+pub const ONE_MEMCPY: (&str, &str) = ("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX2,-ERMS,-FSRM");
 
 struct Run {
     /// Of a scan.
@@ -21,7 +21,7 @@ struct Run {
     state: String,
 }
 
-fn succeeds(command: &mut Command) -> Output {
+pub fn succeeds(command: &mut Command) -> Output {
     let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
     assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
     output
@@ -67,8 +67,7 @@ fn run(subject: &Subject, folder: &Path, library: &Path, driver: &str, scan: &st
     succeeds(cc.arg(&program));
     let mut valgrind = Command::new("valgrind");
     valgrind.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]).arg(format!("--toggle-collect={scan}"));
-    // One memcpy for all processors.
-    valgrind.env("GLIBC_TUNABLES", "glibc.cpu.hwcaps=-AVX512F,-AVX512VL,-AVX2,-ERMS,-FSRM");
+    valgrind.env(ONE_MEMCPY.0, ONE_MEMCPY.1);
     let output = succeeds(valgrind.arg(&program));
     let report = String::from_utf8_lossy(&output.stderr);
     let collected = report.lines().find_map(|line| line.split_once("Collected :")).unwrap().1;
@@ -90,7 +89,7 @@ fn text_bytes(program: &Path) -> u64 {
     row.split_whitespace().next().unwrap().parse().unwrap()
 }
 
-fn measure(subject: &Subject) -> Measured {
+fn measure(subject: &Subject) -> Measured<5> {
     let [rust, native] = ["rust", "native"].map(|it| compiled(subject, it));
     assert_eq!(rust.state, native.state, "{}: the back ends leave other states", subject.name);
     let by_hand = subject.by_hand.as_ref().map(|_| by_hand(subject));
@@ -103,7 +102,7 @@ fn measure(subject: &Subject) -> Measured {
 }
 
 /// Every program, two at a time.
-pub fn measured() -> BTreeMap<String, Measured> {
+pub fn measured() -> BTreeMap<String, Measured<5>> {
     let left = Mutex::new(subject::all());
     let done = Mutex::new(BTreeMap::new());
     let work = || {

@@ -1,37 +1,58 @@
-//! `docs/performance.md`: its tables are written from `tests/perf/instructions.tsv`.
+//! `docs/performance.md`: its tables are written from `tests/perf/*.tsv`.
 
 use crate::root;
-use crate::table::Table;
+use crate::table::{COMPILING, SCANS, Table};
 use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
+use std::sync::Mutex;
 
 const START: &str = "<!-- written by the test `instructions`: -->\n";
+const COMPILING_START: &str = "<!-- written by the test `instructions`, of the command: -->\n";
 const END: &str = "<!-- end -->\n";
+
+/// Both tests may bless at a time.
+static WRITING: Mutex<()> = Mutex::new(());
 
 fn path() -> PathBuf {
     root().join("docs/performance.md")
 }
 
-pub fn write(table: &Table) {
-    fs::write(path(), with_tables(&fs::read_to_string(path()).unwrap(), table)).unwrap();
+pub fn write() {
+    let _one = WRITING.lock().unwrap();
+    fs::write(path(), with_tables(&fs::read_to_string(path()).unwrap())).unwrap();
 }
 
-pub fn is_of(table: &Table) -> bool {
+pub fn is_of_tables() -> bool {
     let text = fs::read_to_string(path()).unwrap();
-    text == with_tables(&text, table)
+    text == with_tables(&text)
 }
 
-fn with_tables(text: &str, table: &Table) -> String {
-    let (before, rest) = text.split_once(START).expect("the page marks its tables");
+fn with_tables(text: &str) -> String {
+    let scans = SCANS.read();
+    let text = with(text, START, &format!("{}\n{}", beside_by_hand(&scans), others(&scans)));
+    with(&text, COMPILING_START, &compiling(&COMPILING.read()))
+}
+
+fn with(text: &str, start: &str, tables: &str) -> String {
+    let (before, rest) = text.split_once(start).expect("the page marks its tables");
     let (_, after) = rest.split_once(END).expect("the page marks its tables' end");
-    format!("{before}{START}\n{}\n{}\n{END}{after}", beside_by_hand(table), others(table))
+    format!("{before}{start}\n{tables}\n{END}{after}")
 }
 
-fn beside_by_hand(table: &Table) -> String {
+fn compiling(table: &Table<2>) -> String {
+    let mut text = "| program | `check` | `build --emit rust` |\n|---|---:|---:|\n".to_owned();
+    for (name, row) in table {
+        let [check, build] = row.figures.map(|it| it.unwrap_or_default() as f64 / 1e6);
+        writeln!(text, "| {name} | {check:.1} | {build:.1} |").unwrap();
+    }
+    text
+}
+
+fn beside_by_hand(table: &Table<5>) -> String {
     let mut text = "| program | by hand | Rust | | native | |\n|---|---:|---:|---:|---:|---:|\n".to_owned();
     let mut ratios = [const { Vec::new() }; 2];
-    for (name, row) in &table.0 {
+    for (name, row) in table {
         let [Some(rust), Some(native), _, _, Some(hand)] = row.figures else { continue };
         let times = [rust, native].map(|it| it as f64 / hand as f64);
         ratios.iter_mut().zip(times).for_each(|(all, one)| all.push(one));
@@ -44,9 +65,9 @@ fn beside_by_hand(table: &Table) -> String {
     text
 }
 
-fn others(table: &Table) -> String {
+fn others(table: &Table<5>) -> String {
     let mut text = "| program | Rust | native |\n|---|---:|---:|\n".to_owned();
-    for (name, row) in &table.0 {
+    for (name, row) in table {
         let [Some(rust), Some(native), _, _, None] = row.figures else { continue };
         writeln!(text, "| {name} | {rust} | {native} |").unwrap();
     }

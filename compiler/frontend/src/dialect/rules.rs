@@ -54,15 +54,6 @@ impl Rules {
         matches!(self.real_and_bits.choice, RealAndBits::Bits)
     }
 
-    /// A real is rounded to a whole number before it counts as time.
-    pub const fn counts_whole_units(&self) -> bool {
-        matches!(self.time_as_number.choice, TimeAsNumber::WholeMilliseconds)
-    }
-
-    pub const fn counts_days(&self) -> bool {
-        matches!(self.date_as_number.choice, DateAsNumber::DaysSince1990)
-    }
-
     pub const fn reads_fixed_point(&self) -> bool {
         matches!(self.real_of_text.choice, RealOfText::FixedPoint)
     }
@@ -89,16 +80,22 @@ impl Rules {
 
     /// Integers and bit strings of fewer than 32 bits are computed at 32, and cut where they are stored.
     pub const fn promotes_integers(&self) -> bool {
-        matches!(self.narrow_integers.choice, NarrowIntegers::At32Bits | NarrowIntegers::AsCPromotes)
+        !matches!(self.narrow_integers.choice, NarrowIntegers::AtTheirType)
     }
 
     /// Bit strings are promoted as well, and a function takes and gives values of its own type, which are cut.
     pub const fn promotes_as_c(&self) -> bool {
+        matches!(self.narrow_integers.choice, NarrowIntegers::AsCPromotes | NarrowIntegers::MixedAsCPromotes)
+    }
+
+    /// NOT of a bit string of fewer than 32 bits has 32.
+    pub const fn complements_as_c(&self) -> bool {
         matches!(self.narrow_integers.choice, NarrowIntegers::AsCPromotes)
     }
 
-    pub const fn has_functions_of_matiec(&self) -> bool {
-        matches!(self.functions.choice, Functions::OfMatiec)
+    /// Two operands of one type give that type, which they are cut to.
+    pub const fn keeps_one_type(&self) -> bool {
+        matches!(self.narrow_integers.choice, NarrowIntegers::MixedAsCPromotes)
     }
 
     pub const fn time_is_seconds(&self) -> bool {
@@ -121,6 +118,11 @@ impl Rules {
     /// A number without a type is a double, an int or a long, as in C.
     pub const fn has_literals_of_c(&self) -> bool {
         matches!(self.literals.choice, Literals::OfC)
+    }
+
+    /// Integers without a type are DINTs together, and wrap.
+    pub const fn has_immediates(&self) -> bool {
+        matches!(self.literals.choice, Literals::Immediate)
     }
 
     pub const fn writes_plus(&self) -> bool {
@@ -151,6 +153,8 @@ pub enum NarrowIntegers {
     AtTheirType,
     At32Bits,
     AsCPromotes,
+    /// Two of one type stay at it; one beside a number without a type, or beside another type, is promoted.
+    MixedAsCPromotes,
 }
 
 impl Choice for NarrowIntegers {
@@ -161,6 +165,9 @@ impl Choice for NarrowIntegers {
             Self::AtTheirType => "at their type",
             Self::At32Bits => "at 32 bits",
             Self::AsCPromotes => "at 32 bits by operators, at their type by functions",
+            Self::MixedAsCPromotes => {
+                "two of one type at that; beside another type, or a number without one, at 32 bits"
+            }
         }
     }
 }
@@ -284,6 +291,7 @@ impl Choice for ShrOfSigned {
 pub enum TimeAsNumber {
     Milliseconds,
     WholeMilliseconds,
+    CutMilliseconds,
     Seconds,
 }
 
@@ -294,6 +302,7 @@ impl Choice for TimeAsNumber {
         match self {
             Self::Milliseconds => "milliseconds",
             Self::WholeMilliseconds => "milliseconds; of a REAL whole ones",
+            Self::CutMilliseconds => "milliseconds; of a REAL the fraction is cut",
             Self::Seconds => "seconds",
         }
     }
@@ -373,6 +382,8 @@ impl Choice for IntegerText {
 pub enum DateAsNumber {
     SecondsSince1970,
     DaysSince1990,
+    /// As STruC++ keeps it, but that a TOD or DT becomes a number of milliseconds.
+    AsStored,
 }
 
 impl Choice for DateAsNumber {
@@ -382,6 +393,7 @@ impl Choice for DateAsNumber {
         match self {
             Self::SecondsSince1970 => "seconds since 1970-01-01",
             Self::DaysSince1990 => "days since 1990-01-01",
+            Self::AsStored => "days since 1970-01-01; a TOD or DT is of nanoseconds, and becomes milliseconds",
         }
     }
 }
@@ -428,6 +440,7 @@ pub enum LimitCrossed {
     Maximum,
     Value,
     Minimum,
+    MinimumFirst,
 }
 
 impl Choice for LimitCrossed {
@@ -438,6 +451,7 @@ impl Choice for LimitCrossed {
             Self::Maximum => "MX",
             Self::Value => "IN; NaN where one is NaN",
             Self::Minimum => "MN, or MX where IN is above MN",
+            Self::MinimumFirst => "MN where IN is below it, else MX",
         }
     }
 }
@@ -501,6 +515,14 @@ impl Choice for RotatedConstant {
 pub enum Functions {
     OfTheStandard,
     OfMatiec,
+    OfStrucpp,
+}
+
+impl Functions {
+    /// SIN, SQRT and the like of a REAL are computed at LREAL.
+    pub const fn computes_at_lreal(self) -> bool {
+        matches!(self, Self::OfMatiec | Self::OfStrucpp)
+    }
 }
 
 impl Choice for Functions {
@@ -510,6 +532,7 @@ impl Choice for Functions {
         match self {
             Self::OfTheStandard => "as the standard",
             Self::OfMatiec => "as MATIEC's library",
+            Self::OfStrucpp => "as STruC++'s library",
         }
     }
 }
@@ -519,6 +542,7 @@ impl Choice for Functions {
 pub enum Literals {
     OfTheirPlace,
     OfC,
+    Immediate,
 }
 
 impl Choice for Literals {
@@ -528,6 +552,7 @@ impl Choice for Literals {
         match self {
             Self::OfTheirPlace => "of its place's type",
             Self::OfC => "C's `double`, `int` or `long`",
+            Self::Immediate => "of its place's type; two integers together are DINTs",
         }
     }
 }
@@ -630,9 +655,10 @@ const MATIEC: &str = "thiagoralves/matiec f9ca9ba, run";
 
 const OPENPLC4: Rules = Rules {
     narrow_integers: follows(
-        NarrowIntegers::AtTheirType,
-        "STruC++ 0.6.1, run: INT 30000 + 10000 into a DINT is -25536",
+        NarrowIntegers::MixedAsCPromotes,
+        "STruC++ 0.6.1, run: INT 30000 + 10000 into a DINT is -25536; `SINT#127 + 1 > 100` is TRUE",
     ),
+    mixed_numbers: follows(MixedNumbers::Ranked, "STruC++ 0.6.1: the usual arithmetic conversions of C++"),
     real_to_integer: follows(RealToInteger::RoundedByC, "STruC++ 0.6.1, run: REAL_TO_INT(40000.0) is -25536"),
     halves: follows(Halves::AwayFromZero, "STruC++ 0.6.1, run: REAL_TO_INT(2.5) is 3"),
     integer_to_bool: follows(ToBool::NotZero, "STruC++ 0.6.1, run: INT_TO_BOOL(256) is TRUE"),
@@ -640,10 +666,14 @@ const OPENPLC4: Rules = Rules {
     division_by_zero: follows(ByZero::Faults, "STruC++ 0.6.1, run: the process ends"),
     modulo_by_zero: follows(ByZero::Faults, "STruC++ 0.6.1: as the division"),
     shr_of_signed: follows(ShrOfSigned::Sign, "STruC++ 0.6.1, run: SHR(-8, 1) is -4"),
-    time_as_number: follows(TimeAsNumber::Milliseconds, "STruC++ 0.6.1, run: TIME_TO_DINT(T#1s500ms) is 1500"),
+    time_as_number: follows(TimeAsNumber::CutMilliseconds, "STruC++ 0.6.1, run: REAL_TO_TIME(2.9) is T#2ms"),
     real_and_bits: follows(RealAndBits::Value, "STruC++ 0.6.1, run: REAL_TO_DWORD(1.5) is 2"),
     default_string: follows(DefaultString::Holds254, "STruC++ 0.6.1: STRING_LENGTH"),
     integer_text: follows(IntegerText::Digits, "STruC++ 0.6.1, run: INT_TO_STRING(207)"),
+    date_as_number: follows(DateAsNumber::AsStored, "STruC++ 0.6.1, run: DATE_TO_DINT(D#1999-03-01) is 10651"),
+    limit_crossed: follows(LimitCrossed::MinimumFirst, "STruC++ 0.6.1, run: LIMIT(7, 1, 1) is 7"),
+    functions: follows(Functions::OfStrucpp, "STruC++ 0.6.1, run: INSERT('ABC', 'X', 1) is 'XABC'"),
+    literals: follows(Literals::OfC, "STruC++ 0.6.1, run: `REAL#0.1 - 0.30000001` is -0.200000003"),
     ..IEC
 };
 
@@ -660,6 +690,7 @@ const LOGIX: Rules = Rules {
     modulo_by_zero: follows(ByZero::Reported, "1756-RM003N, p. 281: a minor fault; A - TRN(A / B) * B"),
     sqrt_of_negative: follows(SqrtOfNegative::RootOfMagnitude, "1756-RM003, \"Square Root\""),
     modulo_of_reals: follows(ModuloOfReals::Remainder, "1756-RM003N, p. 279, \"Modulo\""),
+    literals: follows(Literals::Immediate, "1756-RM006K, p. 545: immediate values are DINTs"),
     ..IEC
 };
 
@@ -796,39 +827,30 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_matiec(Use::Function("LN"), LAST_DIGIT),
     of_matiec(Use::Function("LOG"), LAST_DIGIT),
     of_matiec(Use::Operator("**", Class::Num), LAST_DIGIT),
-    of_strucpp(Use::Function("LIMIT"), "MN where IN is less than it, also where MN is above MX: `LIMIT(7, 1, 1)` is 7"),
-    of_strucpp(Use::Function("MUX"), "the last input, where K is below 0 or past the inputs"),
-    of_strucpp(Use::Function("SIN"), IN_DOUBLE),
-    of_strucpp(Use::Function("COS"), IN_DOUBLE),
-    of_strucpp(Use::Function("TAN"), IN_DOUBLE),
-    of_strucpp(Use::Function("ASIN"), IN_DOUBLE),
-    of_strucpp(Use::Function("ACOS"), IN_DOUBLE),
-    of_strucpp(Use::Function("ATAN"), IN_DOUBLE),
-    of_strucpp(Use::Function("EXP"), IN_DOUBLE),
-    of_strucpp(Use::Function("LN"), IN_DOUBLE),
-    of_strucpp(Use::Function("LOG"), IN_DOUBLE),
-    of_strucpp(Use::Function("SQRT"), IN_DOUBLE),
-    of_strucpp(Use::Operator("**", Class::Num), IN_DOUBLE),
-    of_strucpp(Use::Literal(Class::Real), "a `double` of C++: `x * 0.1` is computed as an LREAL"),
-    of_strucpp(Use::Literal(Class::Int), "an `int` of C++: `SINT#127 + 1 > 100` is TRUE"),
-    of_strucpp(Use::Operator("NEG", Class::Signed), "computed in 32 bits: `-SINT#-128` is 128 until it is stored"),
-    of_strucpp(Use::Function("MAX"), "`a > b`, else b: so MAX(NaN, 1.0) is 1.0"),
-    of_strucpp(Use::Function("MIN"), "`a < b`, else b: so MIN(1.0, NaN) is NaN"),
-    of_strucpp(Use::Function("LEFT"), "a negative L is all of the text"),
-    of_strucpp(Use::Function("RIGHT"), "a negative L is all of the text"),
-    of_strucpp(Use::Function("MID"), "nothing where P is below 1"),
-    of_strucpp(Use::Function("INSERT"), "before the character at P: `INSERT('ABC', 'X', 1)` is 'XABC'"),
-    of_strucpp(Use::Function("DELETE"), "all of the text where P is below 1 or past its end"),
-    of_strucpp(Use::Function("REPLACE"), "all of the text where P is below 1 or past its end"),
-    of_strucpp(Use::Conversion(Class::Real, Class::Duration), "the fraction of a millisecond is cut"),
+    of_strucpp(Use::Function("SIN"), LAST_DIGIT),
+    of_strucpp(Use::Function("COS"), LAST_DIGIT),
+    of_strucpp(Use::Function("TAN"), LAST_DIGIT),
+    of_strucpp(Use::Function("ASIN"), LAST_DIGIT),
+    of_strucpp(Use::Function("ACOS"), LAST_DIGIT),
+    of_strucpp(Use::Function("ATAN"), LAST_DIGIT),
+    of_strucpp(Use::Function("EXP"), LAST_DIGIT),
+    of_strucpp(Use::Function("LN"), LAST_DIGIT),
+    of_strucpp(Use::Function("LOG"), LAST_DIGIT),
+    of_strucpp(Use::Operator("**", Class::Num), LAST_DIGIT),
+    of_strucpp(Use::Function("INSERT"), TOO_LONG),
+    of_strucpp(Use::Function("REPLACE"), TOO_LONG),
     of_strucpp(
-        Use::Conversion(Class::Real, Class::Bit),
-        "rounded before it is compared with 0: REAL_TO_BOOL(0.4) is FALSE",
+        Use::Conversion(Class::String, Class::Real),
+        "`inf`, `nan` and hexadecimal digits are read, and `_` ends it",
     ),
-    of_strucpp(Use::Conversion(Class::String, Class::Elementary), TEXTS),
-    of_strucpp(Use::Conversion(Class::Elementary, Class::String), TEXTS),
-    of_strucpp(Use::Conversion(Class::Elementary, Class::Date), DATES),
-    of_strucpp(Use::Conversion(Class::Date, Class::Elementary), DATES),
+    of_strucpp(
+        Use::Conversion(Class::String, Class::Duration),
+        "each part may be missing: STRING_TO_TIME('12') is T#12ms",
+    ),
+    of_strucpp(
+        Use::Conversion(Class::Elementary, Class::Date),
+        "a TOD may be negative, or longer than a day: INT_TO_TOD(-1)",
+    ),
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
 
@@ -839,11 +861,7 @@ const BEFORE: &str = "the process ends where P is 0";
 
 const LAST_DIGIT: &str = "the C library's: the last digit of an LREAL may be another";
 
-const IN_DOUBLE: &str = "computed as an LREAL, by the C library: the last digit may be another";
-
-const TEXTS: &str = "as C++ writes and reads it: REAL_TO_STRING(-1.0E20) is '-1e+20', STRING_TO_INT('8#17') is 8";
-
-const DATES: &str = "a DATE counts days, a TOD or DT nanoseconds or milliseconds: DATE_TO_DINT(D#1999-03-01) is 10651";
+const TOO_LONG: &str = "where the result is longer than the first text may be, the end of what is put in is dropped";
 
 const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
     NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses }

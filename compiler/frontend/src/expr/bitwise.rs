@@ -44,7 +44,7 @@ impl<'s> Checker<'_, 's> {
                 let value = self.apply(Op::Not, ty, vec![value], ty, span)?;
                 Some(computed(value, Type::Elementary(own)))
             }
-            Some(own @ Type::Elementary(it)) if it.is_bits() && self.decl.dialect(span).rules().promotes_as_c() => {
+            Some(own @ Type::Elementary(it)) if it.is_bits() && self.decl.dialect(span).rules().complements_as_c() => {
                 let value = self.materialise(operand, expected, span)?;
                 let value = self.promote(value, span);
                 let ty = value.ty;

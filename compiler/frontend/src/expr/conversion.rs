@@ -1,11 +1,11 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
-use crate::dialect::rules::{Halves, ToBool};
+use crate::dialect::rules::{DateAsNumber, Functions, Halves, TimeAsNumber, ToBool};
 use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Chars, Conversion, Elementary, Expr, Op, Type, Value};
-use staunch_runtime::time::{DAY, SECOND};
+use staunch_runtime::time::{DAY, MILLISECOND, SECOND};
 use staunch_runtime::{Class, Time};
 
 impl<'s> Checker<'_, 's> {
@@ -109,6 +109,10 @@ impl<'s> Checker<'_, 's> {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
                 self.as_time(nanoseconds, to, span)
             }
+            (None, None) if to == Elementary::Bool && from.is_real() && rules.rounds_by_c() => {
+                let whole = self.apply(Op::AwayFromZero, value.ty, vec![value], Type::LREAL, span)?;
+                Some(self.convert(Conversion::Value, Type::BOOL, whole))
+            }
             (None, None) if to == Elementary::Bool => self.truth(value, from, span),
             (None, None) if are_the_same_bits(from, to) && rules.copies_bits() => {
                 Some(self.convert(Conversion::Bits, target, value))
@@ -127,16 +131,23 @@ impl<'s> Checker<'_, 's> {
             (Some(_), None) if rules.time_is_seconds() => self.seconds(value, to, span),
             (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
             (Some(unit), None) => {
-                let (unit, since) = self.counts_from(from, unit, span);
+                let (unit, since) = self.counted_by(from, unit, span);
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
                 let nanoseconds = self.since_epoch(Op::Sub, nanoseconds, since, span)?;
-                let count = self.scaled_by(Op::Div, nanoseconds, unit, to.is_real(), span)?;
+                let real = to.is_real() && rules.time_as_number.choice != TimeAsNumber::CutMilliseconds;
+                let count = self.scaled_by(Op::Div, nanoseconds, unit, real, span)?;
                 Some(self.convert(Conversion::Value, target, count))
             }
             (None, Some(unit)) => {
                 let (unit, since) = self.counts_from(to, unit, span);
-                let real = from.is_real() && !self.decl.dialect(span).rules().counts_whole_units();
-                let wide = self.number_as(value, if real { Elementary::Lreal } else { Elementary::Lint }, span)?;
+                let real = from.is_real() && rules.time_as_number.choice == TimeAsNumber::Milliseconds;
+                let wide = match rules.time_as_number.choice {
+                    _ if real => self.number_as(value, Elementary::Lreal, span)?,
+                    TimeAsNumber::CutMilliseconds if from.is_real() => {
+                        self.apply(Op::TruncLint, value.ty, vec![value], Type::LINT, span)?
+                    }
+                    _ => self.number_as(value, Elementary::Lint, span)?,
+                };
                 let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
                 let count = self.since_epoch(Op::Add, count, since, span)?;
@@ -147,8 +158,29 @@ impl<'s> Checker<'_, 's> {
 
     /// What a number counts that becomes `ty`, and the point in time that it counts from.
     fn counts_from(&self, ty: Elementary, unit: Time, span: Span) -> (Time, Time) {
-        let days = ty == Elementary::Date && self.decl.dialect(span).rules().counts_days();
-        if days { (DAY, staunch_runtime::time::date(1990, 1, 1)) } else { (unit, 0) }
+        match (self.decl.dialect(span).rules().date_as_number.choice, ty) {
+            (DateAsNumber::DaysSince1990, Elementary::Date) => (DAY, staunch_runtime::time::date(1990, 1, 1)),
+            (DateAsNumber::AsStored, Elementary::Date) => (DAY, 0),
+            (DateAsNumber::AsStored, Elementary::Tod | Elementary::Dt) => (1, 0),
+            _ => (unit, 0),
+        }
+    }
+
+    /// The same of the number that `ty` becomes.
+    fn counted_by(&self, ty: Elementary, unit: Time, span: Span) -> (Time, Time) {
+        match (self.decl.dialect(span).rules().date_as_number.choice, ty) {
+            (DateAsNumber::AsStored, Elementary::Tod | Elementary::Dt) => (MILLISECOND, 0),
+            _ => self.counts_from(ty, unit, span),
+        }
+    }
+
+    /// What STruC++ keeps of a TIME or a point in time, which is what it writes as text.
+    pub(super) fn stored_count(&mut self, value: Expr, ty: Elementary, span: Span) -> Option<Expr> {
+        let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+        match ty {
+            Elementary::Date => self.scaled_by(Op::Div, nanoseconds, DAY, false, span),
+            _ => Some(nanoseconds),
+        }
     }
 
     fn since_epoch(&mut self, op: Op, value: Expr, by: Time, span: Span) -> Option<Expr> {
@@ -252,7 +284,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let wide = self.convert(Conversion::Value, Type::LINT, value);
-        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let matiec = self.decl.dialect(span).rules().functions.choice == Functions::OfMatiec;
         let op = match op {
             Op::ToBcd if matiec => Op::BcdOf,
             Op::FromBcd if matiec => Op::OfBcdOrZero,
@@ -295,7 +327,7 @@ impl<'s> Checker<'_, 's> {
         self.note_conversion(from, Type::Elementary(to), name.span);
         let low_bits = self.decl.dialect(name.span).rules().keeps_low_bits();
         let rules = self.decl.dialect(name.span).rules();
-        if how == Rounding::ToZero && (rules.has_functions_of_matiec() || rules.rounds_by_c()) {
+        if how == Rounding::ToZero && (rules.functions.choice == Functions::OfMatiec || rules.rounds_by_c()) {
             let lint = self.apply(truncated_by(to), from, vec![value], Type::LINT, name.span)?;
             return Some(self.convert(Conversion::Value, Type::Elementary(to), lint));
         }

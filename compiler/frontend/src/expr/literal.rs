@@ -374,7 +374,7 @@ impl<'s> Checker<'_, 's> {
     fn as_immediate(&mut self, sides: [i128; 2], value: i128, span: Span) -> i128 {
         let repr = Elementary::Dint.repr();
         let are_dints = sides.iter().all(|it| repr.integer(*it).is_some());
-        if !are_dints || repr.integer(value).is_some() || !self.decl.dialect(span).rules().ranks_numbers() {
+        if !are_dints || repr.integer(value).is_some() || !self.decl.dialect(span).rules().has_immediates() {
             return value;
         }
         // The low 32 bits, with their sign.

@@ -293,13 +293,19 @@ impl<'s> Checker<'_, 's> {
         }
         let text = self.decl.log.sources.text(bare(given).span);
         let negated = if matches!(bare(given).kind, Ast::Binary(..)) { format!("({text})") } else { text.to_owned() };
+        let both = match call.block.info().pin_for(PinRole::Up) {
+            Some(_) => {
+                "; where both inputs count in one call, a CTUD counts up, then down: `staunch compare` has what to write"
+            }
+            None => "",
+        };
         self.report(
             Diagnostic::new(Code::W0616, at, format!("`{}` counts down when CD falls", call.name))
                 .label("counted when this becomes FALSE")
                 .note("OpenPLC from v4.1 has an F_TRIG here, up to Editor 4.2.11 at least; before v4.1 it counted the rise")
                 .help(format!(
                     "give `NOT {negated}` to count when it rises; where your Editor counts the rise, say \
-                     `openplc4-cd-edge = \"rising\"` in staunch.toml"
+                     `openplc4-cd-edge = \"rising\"` in staunch.toml{both}"
                 )),
         );
     }

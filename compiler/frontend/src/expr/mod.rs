@@ -66,6 +66,7 @@ mod string_compare;
 mod system_use;
 pub(crate) mod test_words;
 mod text_conversion;
+mod text_functions;
 mod typed_function;
 mod undefined_shift;
 pub(crate) mod unresolved;

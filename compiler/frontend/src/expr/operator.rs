@@ -3,11 +3,14 @@
 use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
+use crate::dialect::rules::TimeAsNumber;
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
 use staunch_runtime::Class;
+
+const REAL: Type = Type::Elementary(Elementary::Real);
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn binary(
@@ -52,7 +55,6 @@ impl<'s> Checker<'_, 's> {
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
         self.note_operator(sides.op.text(), &[&sides.a, &sides.b], sides.op_span);
-        self.note_literals([&sides.a, &sides.b], sides.op_span);
         if sides.a.is_reference() || sides.b.is_reference() {
             return self.reference_operation(sides);
         }
@@ -119,7 +121,8 @@ impl<'s> Checker<'_, 's> {
             }
         };
         let rules = dialect.rules();
-        let ty = match rules.promotes_integers() {
+        let is_one_type = rules.keeps_one_type() && is_kept(&sides);
+        let ty = match rules.promotes_integers() && !is_one_type {
             true => promoted(&sides, own, rules.promotes_as_c(), rules.ranks_numbers()),
             false => own,
         };
@@ -324,7 +327,6 @@ impl<'s> Checker<'_, 's> {
     /// `**`: a REAL or LREAL base gives its own type, whatever the exponent is. A REAL to the power of what REAL does not
     /// hold exactly goes through LREAL. Integers as a base are converted.
     fn power(&mut self, sides: Sides) -> Option<Operand> {
-        const REAL: Type = Type::Elementary(Elementary::Real);
         let op_span = sides.op_span;
         let mixes = self.decl.dialect(sides.span).mixes_bits_and_integers();
         let is_number =
@@ -339,7 +341,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let is_long = |operand: &Operand| matches!(operand.ty(), Some(Type::Elementary(it)) if it == Elementary::Lreal || it.repr().size() > 2 && !it.is_real() && is_number(it));
-        let as_c = self.decl.dialect(sides.span).rules().has_functions_of_matiec();
+        let as_c = self.decl.dialect(sides.span).rules().functions.choice.computes_at_lreal();
         let long = is_long(&sides.a) || is_long(&sides.b) || as_c;
         let keeps_base = self.decl.dialect(sides.span).powers_have_type_of_base();
         let is_real = match sides.a.ty() {
@@ -450,7 +452,8 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    /// TIME `*` or `/` a number. An integer counts exactly, a real through LREAL.
+    /// TIME `*` or `/` a number. An integer counts exactly, a real through LREAL; in OpenPLC from v4.1 on at its own type, and
+    /// what is less than a nanosecond is cut.
     fn scale_time(&mut self, sides: Sides) -> Option<Expr> {
         let op = arithmetic_op(sides.op);
         let (op_span, span) = (sides.op_span, sides.span);
@@ -483,11 +486,18 @@ impl<'s> Checker<'_, 's> {
             let count = self.convert(Conversion::Same, ty, count);
             return self.apply(op, ty, vec![time, count], ty, op_span);
         }
-        let factor = self.side(sides.b, Elementary::Lreal, sides.right)?;
+        let cuts = self.decl.dialect(span).rules().time_as_number.choice == TimeAsNumber::CutMilliseconds;
+        let at_real = cuts && sides.b.computed_at() == Some(REAL);
+        let computed = if at_real { Elementary::Real } else { Elementary::Lreal };
+        let factor = self.side(sides.b, computed, sides.right)?;
+        let computed = Type::Elementary(computed);
         let lint = self.convert(Conversion::Same, Type::LINT, time);
-        let time = self.convert(Conversion::Value, Type::LREAL, lint);
-        let scaled = self.apply(op, Type::LREAL, vec![time, factor], Type::LREAL, op_span)?;
-        let lint = self.convert(Conversion::Value, Type::LINT, scaled);
+        let time = self.convert(Conversion::Value, computed, lint);
+        let scaled = self.apply(op, computed, vec![time, factor], computed, op_span)?;
+        let lint = match cuts {
+            true => self.apply(Op::TruncLint, computed, vec![scaled], Type::LINT, op_span)?,
+            false => self.convert(Conversion::Value, Type::LINT, scaled),
+        };
         Some(self.convert(Conversion::Same, ty, lint))
     }
 
@@ -619,6 +629,14 @@ fn promoted(sides: &Sides, own: Elementary, as_c: bool, ranks: bool) -> Elementa
     match common(sides, [sides.a.computed_at(), sides.b.computed_at()], true, join) {
         Some(ty) if calculates && is_narrow(ty) => Elementary::Dint,
         ty => ty.unwrap_or(own),
+    }
+}
+
+/// Whether C++ has an operator for two of the type of both sides, which gives that type: it has none for AND, OR and XOR.
+fn is_kept(sides: &Sides) -> bool {
+    match (&sides.a, &sides.b) {
+        (Operand::Typed(a), Operand::Typed(b)) => a.ty == b.ty && !is_junction(sides.op),
+        _ => false,
     }
 }
 

@@ -5,23 +5,19 @@ use super::checker::{Checker, Context};
 use super::constant::is_constant;
 use super::operand::{Operand, computed};
 use super::overload::{Resolved, parameter_names};
-use super::text_conversion::MAX_CAPACITY;
-use crate::dialect::rules::LimitCrossed;
+use crate::dialect::rules::{Functions, LimitCrossed};
 use crate::names::functions::{self, Meaning, named};
 use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
-    Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind,
-    StringType, TextOp, Type, Use, Value,
+    Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind, Type,
+    Use, Value,
 };
 use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
 /// The signature of every conversion, `INT_TO_REAL` and the like.
 const CONVERSION: Signature = signature!("_TO_" (IN: T) -> T [ANY]);
-
-/// So many text functions may be nested in one expression of the program that is made.
-const MAX_TEXT_DEPTH: usize = 32;
 
 impl<'s> Checker<'_, 's> {
     pub(crate) fn standard_function(
@@ -161,18 +157,19 @@ impl<'s> Checker<'_, 's> {
             operands =
                 operands.into_iter().map(|it| self.apply(Op::Abs, ty, vec![it], ty, span)).collect::<Option<_>>()?;
         }
-        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let library = self.decl.dialect(span).rules().functions.choice;
         let value = match (op, ty) {
             (Op::Limit, Type::Elementary(_)) => self.limited(ty, operands, span),
-            (Op::Limit, Type::String(_)) if matiec => self.limited_text_low(ty, operands, span),
-            (Op::Abs, _) if matiec => self.apply(Op::AbsIfBelow, ty, operands, ty, span),
-            (_, Type::Elementary(Elementary::Real)) if matiec && is_of_math(op) => {
+            (Op::Limit, Type::String(_)) if library == Functions::OfMatiec => self.limited_text_low(ty, operands, span),
+            (Op::Abs, _) if library == Functions::OfMatiec => self.apply(Op::AbsIfBelow, ty, operands, ty, span),
+            (_, Type::Elementary(Elementary::Real)) if library.computes_at_lreal() && is_of_math(op) => {
                 let operands =
                     operands.into_iter().map(|it| self.convert(Conversion::Value, Type::LREAL, it)).collect();
                 let value = self.apply(op, Type::LREAL, operands, Type::LREAL, span)?;
                 Some(self.convert(Conversion::Value, ty, value))
             }
             (Op::Max | Op::Min, Type::String(_)) => self.extreme_text(op, ty, operands, span),
+            (Op::Max | Op::Min, _) if library == Functions::OfStrucpp => self.last_of_equals(op, ty, operands, span),
             (Op::Max | Op::Min, _) => self.fold(op, ty, operands, span),
             (Op::Limit, Type::String(_)) => self.limited_text(ty, operands, span),
             (Op::Sel, _) if self.decl.program.repr(ty).is_none() || matches!(ty, Type::Reference(_)) => {
@@ -193,6 +190,7 @@ impl<'s> Checker<'_, 's> {
             LimitCrossed::Maximum => Op::Limit,
             LimitCrossed::Value => Op::LimitInOrder,
             LimitCrossed::Minimum => Op::LimitLow,
+            LimitCrossed::MinimumFirst => Op::LimitFirst,
         };
         self.apply(op, ty, operands, ty, span)
     }
@@ -204,6 +202,17 @@ impl<'s> Checker<'_, 's> {
         let then = vec![Statement::new(StatementKind::Fault(FaultKind::AssertionFailed), at)];
         self.push(StatementKind::If { condition: fails, then, otherwise: Vec::new() }, span);
         Expr::constant(Elementary::Bool, Value::Bool(true), at)
+    }
+
+    /// MAX and MIN that give the second of two where neither is beyond the other, as with NaN: ours give the first.
+    fn last_of_equals(&mut self, op: Op, ty: Type, mut operands: Vec<Expr>, span: Span) -> Option<Expr> {
+        self.fault_in_order(operands.iter_mut());
+        let mut operands = operands.into_iter();
+        let mut result = operands.next()?;
+        for operand in operands {
+            result = self.apply(op, ty, vec![operand, result], ty, span)?;
+        }
+        Some(result)
     }
 
     /// An extensible function folds from the left.
@@ -246,7 +255,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A count or position as a LINT; what is more than a LINT holds is its greatest value.
-    fn count(&mut self, value: Expr) -> Option<Expr> {
+    pub(super) fn count(&mut self, value: Expr) -> Option<Expr> {
         let most = Elementary::Ulint.repr().integer(i128::from(i64::MAX)).filter(|_| is_wide(value.ty));
         let value = match most {
             Some(most) => {
@@ -324,6 +333,7 @@ impl<'s> Checker<'_, 's> {
         }
         let mut inputs = operands.into_iter().zip(before);
         let (selector, _) = inputs.next()?;
+        let selector = self.selector(selector, span);
         let at = self.at(span);
         let result = self.temporary("selected", ty);
         let arm = |(number, (input, mut body)): (i128, (Expr, Block))| {
@@ -331,10 +341,12 @@ impl<'s> Checker<'_, 's> {
             Arm { labels: vec![(number, number)], body }
         };
         let mut arms: Vec<_> = (0..).zip(inputs).map(arm).collect();
-        let matiec = self.decl.dialect(span).rules().has_functions_of_matiec();
-        let mut outside = match self.nothing_of(ty, span).filter(|_| matiec) {
-            Some(nothing) => vec![Statement::assign(result.clone(), nothing, at)],
-            None => vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)],
+        let mut outside = match (self.decl.dialect(span).rules().functions.choice, self.nothing_of(ty, span)) {
+            (Functions::OfMatiec, Some(nothing)) => vec![Statement::assign(result.clone(), nothing, at)],
+            (Functions::OfStrucpp, _) => arms.pop()?.body,
+            (Functions::OfTheStandard | Functions::OfMatiec, _) => {
+                vec![Statement::new(StatementKind::Fault(FaultKind::IndexOutOfRange), at)]
+            }
         };
         if chooses {
             let (least, most) = self.decl.program.repr(selector.ty).and_then(Repr::range)?;
@@ -347,6 +359,14 @@ impl<'s> Checker<'_, 's> {
         }
         self.push(StatementKind::Case { selector, arms, otherwise: outside }, span);
         Some(computed(Expr::load(result, at), own))
+    }
+
+    /// K, which is an INT to STruC++.
+    fn selector(&mut self, selector: Expr, span: Span) -> Expr {
+        match self.decl.dialect(span).rules().functions.choice {
+            Functions::OfStrucpp => self.convert(Conversion::Value, Type::INT, selector),
+            Functions::OfTheStandard | Functions::OfMatiec => selector,
+        }
     }
 
     /// 0, FALSE or the empty text: what MATIEC's MUX gives past its inputs.
@@ -362,16 +382,19 @@ impl<'s> Checker<'_, 's> {
     fn constant_mux(&mut self, ty: Type, operands: Vec<Expr>, span: Span) -> Option<Expr> {
         let mut inputs = operands.into_iter();
         let selector = inputs.next()?;
+        let selector = self.selector(selector, span);
         let number = selector.as_const().and_then(Value::as_integer)?;
+        let last = inputs.as_slice().last().cloned();
         let is_beyond = usize::try_from(number).map_or(number > 0, |it| it >= inputs.len());
         let chosen = match usize::try_from(number) {
             _ if is_beyond && self.decl.dialect(span).chooses_inputs() => inputs.next_back(),
             Ok(number) => inputs.nth(number),
             Err(_) => None,
         };
-        let chosen = match chosen {
-            None if self.decl.dialect(span).rules().has_functions_of_matiec() => self.nothing_of(ty, span),
-            chosen => chosen,
+        let chosen = match (chosen, self.decl.dialect(span).rules().functions.choice) {
+            (None, Functions::OfMatiec) => self.nothing_of(ty, span),
+            (None, Functions::OfStrucpp) => last,
+            (chosen, _) => chosen,
         };
         if chosen.is_none() {
             let fault = FaultKind::IndexOutOfRange;
@@ -382,84 +405,6 @@ impl<'s> Checker<'_, 's> {
         }
         chosen.map(|it| Expr { ty, ..it })
     }
-
-    fn text_function(&mut self, op: TextOp, operands: Vec<Expr>, span: Span) -> Option<Expr> {
-        if op == TextOp::Concat {
-            return self.concat(operands, span);
-        }
-        let op = if self.decl.dialect(span).rules().has_functions_of_matiec() { in_matiec(op) } else { op };
-        let mut ready = Vec::new();
-        for (operand, repr) in operands.into_iter().zip(op.operands()) {
-            ready.push(if repr.is_some() { self.count(operand)? } else { operand });
-        }
-        let ty = match op.result() {
-            Some(_) => Type::INT,
-            None => Type::String(made_by(op, &ready, self.longest(span))?),
-        };
-        let at = self.at(span);
-        let range =
-            self.decl.dialect(span).rules().empties_texts_out_of_range().then(|| positions(op, &ready)).flatten();
-        let text = self.evaluated(Expr::new(ty, ExprKind::ApplyText(op, ready), at), span)?;
-        match range {
-            Some(range) => self.empty_outside(text, &range, span),
-            None => Some(text),
-        }
-    }
-
-    /// So many units has the result of a text function at most: in OpenPLC, as many as a STRING.
-    fn longest(&self, span: Span) -> u16 {
-        let rules = self.decl.dialect(span).rules();
-        if rules.has_functions_of_matiec() { rules.default_string.choice.capacity() } else { MAX_CAPACITY }
-    }
-
-    fn concat(&mut self, operands: Vec<Expr>, span: Span) -> Option<Expr> {
-        let at = self.at(span);
-        let mut operands = operands.into_iter();
-        let mut result = operands.next()?;
-        for operand in operands {
-            let ty = Type::String(joined(result.ty.string_type()?, operand.ty.string_type()?, self.longest(span)));
-            let joined = Expr::new(ty, ExprKind::ApplyText(TextOp::Concat, vec![result, operand]), at);
-            let joined = self.evaluated(joined, span)?;
-            result = self.shallow(joined);
-        }
-        Some(result)
-    }
-
-    /// The text, kept in a variable where it is the result of many functions in one another: each is
-    /// a type of its own to rustc, which takes no more than some hundred in one another.
-    pub(crate) fn shallow(&mut self, text: Expr) -> Expr {
-        if text_depth(&text) < MAX_TEXT_DEPTH {
-            return text;
-        }
-        let at = text.at;
-        let place = self.temporary("saved", text.ty);
-        self.block.push(Statement::assign(place.clone(), text, at));
-        Expr::load(place, at)
-    }
-}
-
-/// The counts and positions of a function on a text, with the least values that S7 takes.
-fn positions(op: TextOp, operands: &[Expr]) -> Option<Vec<(Expr, i64)>> {
-    match (op, operands) {
-        (TextOp::Replace, [_, _, count, position]) | (TextOp::Delete, [_, count, position]) => {
-            Some(vec![(position.clone(), 1), (count.clone(), 0)])
-        }
-        (TextOp::Mid, [_, _, position]) => Some(vec![(position.clone(), 1)]),
-        (TextOp::Insert, [_, _, position]) => Some(vec![(position.clone(), 0)]),
-        _ => None,
-    }
-}
-
-/// The function of MATIEC's library in the place of the standard's, where they differ.
-fn in_matiec(op: TextOp) -> TextOp {
-    const OTHERS: [(TextOp, TextOp); 5] = [
-        (TextOp::Find, TextOp::FindOrEnd),
-        (TextOp::Mid, TextOp::MidOrLength),
-        (TextOp::Insert, TextOp::InsertFrom),
-        (TextOp::Delete, TextOp::DeleteFrom),
-        (TextOp::Replace, TextOp::ReplaceUpTo),
-    ];
-    OTHERS.iter().find(|it| it.0 == op).map_or(op, |it| it.1)
 }
 
 fn empty_text(ty: Type, at: Location) -> Expr {
@@ -475,35 +420,4 @@ fn is_of_math(op: Op) -> bool {
 
 fn is_wide(ty: Type) -> bool {
     matches!(ty, Type::Elementary(Elementary::Ulint | Elementary::Lword))
-}
-
-/// How many text functions are nested in the expression.
-fn text_depth(expr: &Expr) -> usize {
-    match &expr.kind {
-        ExprKind::ApplyText(_, operands) => 1 + operands.iter().map(text_depth).max().unwrap_or(0),
-        ExprKind::Convert(_, inner) => text_depth(inner),
-        ExprKind::Apply(_, operands) => operands.iter().map(text_depth).max().unwrap_or(0),
-        ExprKind::Const(_)
-        | ExprKind::Text(_)
-        | ExprKind::Aggregate(_)
-        | ExprKind::Load(_)
-        | ExprKind::AddressOf(_) => 0,
-    }
-}
-
-/// What holds both strings, one after the other.
-fn joined(a: StringType, b: StringType, longest: u16) -> StringType {
-    a.of_capacity(a.capacity.saturating_add(b.capacity).min(longest))
-}
-
-/// What holds the longest result: what is inserted adds to the text.
-fn made_by(op: TextOp, operands: &[Expr], longest: u16) -> Option<StringType> {
-    let own = operands.first()?.ty.string_type()?;
-    Some(match op {
-        TextOp::MidOrLength => own.of_capacity(own.capacity.saturating_add(1).min(longest)),
-        TextOp::Insert | TextOp::InsertFrom | TextOp::Replace | TextOp::ReplaceUpTo => {
-            joined(own, operands.get(1)?.ty.string_type()?, longest)
-        }
-        _ => own,
-    })
 }

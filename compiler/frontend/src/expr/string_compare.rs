@@ -2,13 +2,14 @@
 
 use super::checker::Checker;
 use crate::Span;
+use crate::dialect::rules::Functions;
 use staunch_ir::{Elementary, Expr, ExprKind, Op, Place, Statement, StatementKind, TextOp, Type, Value};
 
 impl Checker<'_, '_> {
     /// `a < b` and its kin, byte by byte.
     pub(crate) fn compare_texts(&mut self, op: Op, a: Expr, b: Expr, span: Span) -> Option<Expr> {
         let at = self.at(span);
-        let starts = self.decl.dialect(span).rules().has_functions_of_matiec();
+        let starts = self.decl.dialect(span).rules().functions.choice == Functions::OfMatiec;
         let compare = if starts { TextOp::CompareStart } else { TextOp::Compare };
         let order = Expr::new(Type::INT, ExprKind::ApplyText(compare, vec![a, b]), at);
         let order = self.evaluated(order, span)?;

@@ -3,7 +3,6 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use crate::Span;
-use crate::types::coercion::is_narrow;
 use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Use};
 use staunch_runtime::Class;
 
@@ -16,17 +15,6 @@ impl Checker<'_, '_> {
     pub(super) fn note_operator(&mut self, text: &'static str, operands: &[&Operand], span: Span) {
         for class in operands.iter().filter_map(|it| class_of(it)) {
             self.note_use(Use::Operator(text, class), span);
-        }
-    }
-
-    /// A number without a type that is an operand; an integer, beside one of fewer bits than 32, or another literal.
-    pub(super) fn note_literals(&mut self, sides: [&Operand; 2], span: Span) {
-        let is_wide = |it: &Operand| matches!(it.ty(), Some(Type::Elementary(ty)) if !is_narrow(ty));
-        for (literal, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
-            let counts = !matches!(literal, Operand::Integer(_)) || !is_wide(other);
-            if let (None, Some(class), true) = (literal.typed(), class_of(literal), counts) {
-                self.note_use(Use::Literal(class), span);
-            }
         }
     }
 

@@ -1,6 +1,7 @@
 //! Text of values, and values of text: the functions of the runtime that do it, at each type.
 
 use super::checker::Checker;
+use crate::dialect::rules::Functions;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
     Arm, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Op, Statement, StatementKind, StringType, TextOp, Type,
@@ -30,17 +31,20 @@ impl<'s> Checker<'_, 's> {
         }
         let (value, ty) = self.as_elementary(value, span, name)?;
         self.note_conversion(value.ty, Type::string(0), name.span);
-        let matiec = self.decl.dialect(name.span).rules().has_functions_of_matiec();
+        let library = self.decl.dialect(name.span).rules().functions.choice;
+        let (matiec, strucpp) = (library == Functions::OfMatiec, library == Functions::OfStrucpp);
+        let value = if strucpp && ty.is_time() { self.stored_count(value, ty, name.span)? } else { value };
         let (op, operand, longest) = match ty {
             Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
             Elementary::Real | Elementary::Lreal if matiec => (TextOp::FromGeneral, Elementary::Lreal, 17),
+            Elementary::Real | Elementary::Lreal if strucpp => (TextOp::FromShort, Elementary::Lreal, 13),
             Elementary::Real => (TextOp::FromReal, Elementary::Real, 16),
             Elementary::Lreal => (TextOp::FromLreal, Elementary::Lreal, 24),
             Elementary::Lword if matiec => (TextOp::FromBits, Elementary::Ulint, 19),
             Elementary::Ulint | Elementary::Lword => (TextOp::FromUlint, Elementary::Ulint, 20),
             _ if ty.is_time() && matiec => (TextOp::FromSeconds, Elementary::Lint, 40),
             _ if ty.is_bits() && matiec => (TextOp::FromBits, Elementary::Ulint, 19),
-            _ if ty.is_time() => (TextOp::FromTime, Elementary::Lint, 40),
+            _ if ty.is_time() && !strucpp => (TextOp::FromTime, Elementary::Lint, 40),
             _ => (TextOp::FromLint, Elementary::Lint, 20),
         };
         let mut operands = vec![self.convert(Conversion::Value, Type::Elementary(operand), value)];
@@ -135,8 +139,11 @@ impl<'s> Checker<'_, 's> {
             return self.first_character(text, to, span);
         }
         let is_fixed = self.decl.dialect(span).rules().reads_fixed_point();
-        if self.decl.dialect(span).rules().has_functions_of_matiec() {
-            return self.value_of_text_in_openplc(text, to, span);
+        match self.decl.dialect(span).rules().functions.choice {
+            Functions::OfTheStandard => {}
+            Functions::OfMatiec => return self.value_of_text_in_matiec(text, to, span),
+            Functions::OfStrucpp if to.is_integral() => return self.number_of_text_in_strucpp(text, to, span),
+            Functions::OfStrucpp => {}
         }
         let (op, made) = match to {
             Elementary::Bool => (TextOp::ToBool, Elementary::Bool),
@@ -172,7 +179,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A TIME is as many seconds as the number of the text has whole ones.
-    fn value_of_text_in_openplc(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+    fn value_of_text_in_matiec(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
         let (op, made) = match to {
             Elementary::Bool => (TextOp::ToBoolWord, Elementary::Bool),
             _ if to.is_real() || to.is_time() => (TextOp::ToLrealDot, Elementary::Lreal),
@@ -185,6 +192,18 @@ impl<'s> Checker<'_, 's> {
         }
         let whole = self.convert(Conversion::Truncate, Type::LINT, value);
         self.between(whole, Elementary::Lint, to, span)
+    }
+
+    /// A BOOL by the first letter; an integer by the digits at the start.
+    fn number_of_text_in_strucpp(&mut self, text: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let (op, made) = match to {
+            Elementary::Bool => (TextOp::ToBoolLetter, Elementary::Bool),
+            _ if to.repr().is_unsigned() => (TextOp::ToUlintFront, Elementary::Ulint),
+            _ => (TextOp::ToLintFront, Elementary::Lint),
+        };
+        let operands = vec![self.of_kind(text, false, span)?];
+        let value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
+        Some(self.convert(Conversion::Value, Type::Elementary(to), value))
     }
 
     /// What the text spells, or 0 where the type does not hold that.

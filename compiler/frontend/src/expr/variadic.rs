@@ -4,6 +4,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use super::operator::{Meeting, Sides, compares};
+use crate::dialect::rules::Functions;
 use crate::{Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Projection, Type};
@@ -80,7 +81,7 @@ impl<'s> Checker<'_, 's> {
         let mut result = operands.next()?;
         for right in operands {
             let span = right.1;
-            let matiec = self.decl.dialect(name.span).rules().has_functions_of_matiec();
+            let matiec = self.decl.dialect(name.span).rules().functions.choice == Functions::OfMatiec;
             let one = match op == BinaryOp::Div && matiec {
                 true => self.divided_or_zero(name.span, hint, result, right)?,
                 false => self.joined(op, name.span, hint, result, right)?,

@@ -32,6 +32,23 @@ pub fn limit<T: Scalar>(min: T, value: T, max: T) -> T {
     if raised > max { max } else { raised }
 }
 
+/// LIMIT of OpenPLC from v4.1 on: `min` where the value is below it, also where that is above `max`.
+///
+/// ```
+/// use staunch_runtime::ops::limit_first;
+/// assert_eq!([1, 7, 8].map(|it| limit_first(7, it, 5)), [7, 5, 5]);
+/// ```
+#[inline]
+pub fn limit_first<T: Scalar>(min: T, value: T, max: T) -> T {
+    if value < min {
+        min
+    } else if value > max {
+        max
+    } else {
+        value
+    }
+}
+
 /// LIMIT of S7: with crossed bounds the value, and NaN where one of the three is.
 ///
 /// ```

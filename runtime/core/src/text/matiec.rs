@@ -134,7 +134,7 @@ pub fn from_general(value: f64, out: &mut Destination<'_>) {
 const ZERO: decimal::Digits = decimal::Digits { digits: [0; 17], count: 1, exponent: 1 };
 
 /// C's `%.*g` with so many significant digits, at most 17.
-fn general(value: f64, digits: usize, out: &mut Destination<'_>) {
+pub(super) fn general(value: f64, digits: usize, out: &mut Destination<'_>) {
     if value.is_sign_negative() {
         out.write(b"-");
     }

@@ -148,7 +148,9 @@ impl Findings {
         }
         let all_seen = if outcome.found.is_some() { outcome.all_seen } else { outcome.complete };
         if all_seen && exact {
-            for finding in self.all.iter_mut().filter(|it| matches!(it.verdict, Verdict::Undecided)) {
+            let is_open = |at: usize| pair.open.get(at / per_counter).is_some_and(|it| *it);
+            let undecided = self.all.iter_mut().enumerate().filter(|it| matches!(it.1.verdict, Verdict::Undecided));
+            for (_, finding) in undecided.filter(|it| !is_open(it.0)) {
                 finding.verdict = Verdict::Impossible("every reachable state was seen".to_owned());
             }
         }

@@ -3,6 +3,7 @@
 mod normal;
 
 mod scan;
+mod settled;
 mod side;
 
 mod comparison;
@@ -15,6 +16,7 @@ pub use side::Side;
 use crate::compare::program::scalar::{self, Instance, Role, Scalar};
 use comparison::Comparison;
 use passing::{Passed, Passing};
+use settled::{Known, Settled};
 use staunch_host::{Bookmark, Event, Machine, Snapshot};
 use staunch_ir::{Chars, FieldId, StructId, Value};
 use staunch_runtime::FaultKind;
@@ -59,6 +61,12 @@ pub struct Pair {
     compared_bytes: Comparison,
     counter_bytes: Comparison,
     block_bytes: Comparison,
+    /// Counts of which many are alike.
+    settled: Settled,
+    /// Whether some were taken as one.
+    pub are_settled: bool,
+    /// The counters of which a trap may be left that was not seen by that.
+    pub open: Vec<bool>,
     /// Bytes of a state, and of what else decides.
     scratch: Vec<u8>,
     rest: Vec<u8>,
@@ -91,6 +99,9 @@ impl Pair {
             compared_bytes: Comparison::default(),
             counter_bytes: Comparison::default(),
             block_bytes: Comparison::default(),
+            settled: Settled::default(),
+            are_settled: false,
+            open: Vec::new(),
             scratch: Vec::new(),
             rest: Vec::new(),
             first: false,
@@ -258,9 +269,37 @@ impl Pair {
         })
     }
 
+    /// Looks for counts of which many are alike, by what is compared now.
+    pub fn settle_counts(&mut self) {
+        let Self { sides, inputs, compared, counters, .. } = &*self;
+        self.settled = Settled::of(Known { sides, inputs, compared, counters });
+        self.open = vec![false; self.counters.len()];
+    }
+
     /// What decides all that is to come, as a number: two states with one key behave alike under
     /// the same inputs.
     pub fn key(&mut self, ages: &[u8]) -> u128 {
+        self.settled.clear();
+        self.key_of(ages)
+    }
+
+    /// The same of states in which counts past all that they are compared with are one.
+    pub fn settled_key(&mut self, ages: &[u8]) -> u128 {
+        let states = self.sides.each_ref().map(Side::state);
+        self.are_settled |= self.settled.look(states, &mut self.open);
+        self.key_of(ages)
+    }
+
+    /// Goes on with counts that are just past all that they are compared with, in place of those of the last key that are
+    /// further; whether there are any.
+    pub fn move_counts(&mut self) -> bool {
+        for (side, offset, value) in self.settled.moved() {
+            self.sides[*side].write(*offset, *value);
+        }
+        !self.settled.moved().is_empty()
+    }
+
+    fn key_of(&mut self, ages: &[u8]) -> u128 {
         let mut all = std::mem::take(&mut self.rest);
         all.clear();
         for (number, side) in self.sides.iter_mut().enumerate() {
@@ -273,6 +312,7 @@ impl Pair {
             }
             let now = side.drive.next();
             side.timers.iter().for_each(|it| it.settle(state, now));
+            self.settled.write(number, state);
             let idle = self.remaining.get(&self.passed).map(|it| &it.idle[number]);
             idle.into_iter().flatten().for_each(|it| state[it.clone()].fill(0));
             all.extend_from_slice(&side.digest.of(state).to_ne_bytes());

@@ -4,6 +4,7 @@
 pub mod scalar;
 pub mod walked;
 
+pub mod bounds;
 pub mod dependency;
 pub mod facts;
 pub mod usage;

@@ -25,7 +25,7 @@ pub fn find(program: &Program, dialect: Dialect) -> Vec<String> {
 fn used(program: &Program, wanted: Use) -> Option<u32> {
     let is_it = |it: &&Field| match (wanted, it.ty.elementary()) {
         (Use::Type(ty), Some(own)) => it.section == Section::Input && own == ty,
-        (Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..) | Use::Literal(_), _) => false,
+        (Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..), _) => false,
     };
     let programs = program.instances.iter().map(|it| program.class(it.program).state).chain([program.globals]);
     let inputs = programs.flat_map(|it| &program.structure(it).fields).filter(is_it).map(|it| it.location.line);
@@ -36,7 +36,7 @@ fn used(program: &Program, wanted: Use) -> Option<u32> {
 mod tests {
     use super::{Use, used};
     use staunch_frontend::{Options, Source, Sources, compile};
-    use staunch_ir::Elementary;
+    use staunch_ir::{Elementary, Program};
     use staunch_runtime::Class;
 
     const SOURCE: &str = "PROGRAM p
@@ -48,23 +48,26 @@ r := 7.0 / 2.0;
 w := REAL_TO_WORD(REAL#2.5);
 t := T#1s - T#2s;
 b := WORD#1 = WORD#2;
+b := n > 5 AND 7 <> SINT#2;
 END_PROGRAM
 ";
+
+    fn compiled(source: &str) -> Program {
+        let mut sources = Sources::default();
+        sources.add(Source::new("uses.st", source.to_owned()));
+        let compiled = compile(&sources, &Options::default());
+        compiled.program.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics))
+    }
 
     /// Each kind of use is found, also where constants are folded.
     #[test]
     fn each_kind_of_use_is_found() {
-        let mut sources = Sources::default();
-        sources.add(Source::new("uses.st", SOURCE.to_owned()));
-        let compiled = compile(&sources, &Options::default());
-        let program = compiled.program.unwrap_or_else(|| panic!("{:?}", compiled.diagnostics));
+        let program = compiled(SOURCE);
         let found = |wanted| used(&program, wanted);
         assert_eq!(found(Use::Function("LEFT")), Some(4));
         assert_eq!(found(Use::Function("RIGHT")), None);
-        assert_eq!(found(Use::Literal(Class::Int)), Some(5));
         assert_eq!(found(Use::Operator("+", Class::Int)), Some(5));
         assert_eq!(found(Use::Operator("+", Class::Real)), None);
-        assert_eq!(found(Use::Literal(Class::Real)), Some(6));
         assert_eq!(found(Use::Conversion(Class::Real, Class::Bit)), Some(7));
         assert_eq!(found(Use::Conversion(Class::Real, Class::Int)), None);
         assert_eq!(found(Use::Type(Elementary::Time)), Some(8));

@@ -43,8 +43,10 @@ pub struct Exhaustive {
     pub depth: usize,
     /// No state is left.
     pub complete: bool,
-    /// There is no room for more states.
+    /// There is no room for more states, or one of them shows what is not seen from the start.
     full: bool,
+    /// It goes on from states with other counts than those which were reached.
+    are_moved: bool,
 }
 
 /// The keys are hashes.
@@ -85,6 +87,7 @@ impl Exhaustive {
             depth: 0,
             complete: false,
             full: false,
+            are_moved: false,
         }
     }
 
@@ -102,7 +105,7 @@ impl Exhaustive {
             }
             self.at = if symbol + 1 < self.symbols.len() { (entry, symbol + 1) } else { (entry + 1, 0) };
             self.step(search, entry, symbol);
-            self.full = (self.next.len() + self.frontier.len()) * bytes > MAX_BYTES || self.seen.len() >= MAX_STATES;
+            self.full |= (self.next.len() + self.frontier.len()) * bytes > MAX_BYTES || self.seen.len() >= MAX_STATES;
         }
     }
 
@@ -126,8 +129,13 @@ impl Exhaustive {
         search.pair.go_to(place);
         let seen = search.scan(step);
         let node = Node { parent, symbol };
-        if !seen.is_empty() {
-            search.record(seen, || self.path(node));
+        if search.is_new(&seen) {
+            let trace = self.path(node);
+            if self.are_moved && !search.is_shown(&seen, &trace) {
+                self.full = true;
+                return;
+            }
+            search.record(seen, || trace);
         }
         if search.ended() {
             return;
@@ -136,9 +144,10 @@ impl Exhaustive {
         if count > 0 {
             ages.extend(now.to_ne_bytes());
         }
-        let key = search.pair.key(&ages);
+        let key = search.pair.settled_key(&ages);
         ages.truncate(count);
         if self.seen.insert(key) {
+            self.are_moved |= search.pair.move_counts();
             self.next.push(Entry { node: self.nodes.len(), place: search.pair.place(), ages, vector: *now });
             self.nodes.push(node);
         }

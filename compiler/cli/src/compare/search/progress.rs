@@ -95,6 +95,26 @@ impl<'p> Search<'p> {
         self.ended
     }
 
+    /// Whether anything of it would be kept.
+    pub fn is_new(&self, seen: &Seen) -> bool {
+        let Outcome { found, sightings, .. } = &self.outcome;
+        let differs = seen.differs && (found.is_none() || self.by_event.is_some());
+        differs || seen.sightings.iter().any(|it| !sightings.contains_key(it))
+    }
+
+    /// Whether a trace shows it from the start.
+    pub fn is_shown(&mut self, seen: &Seen, trace: &Trace) -> bool {
+        let place = self.pair.place();
+        self.pair.init();
+        let mut last = Seen::default();
+        for step in trace.steps() {
+            let faults = self.pair.scan(step);
+            last = look(self.pair, self.world, step.event, faults);
+        }
+        self.pair.go_to(&place);
+        last.differs == seen.differs && seen.sightings.iter().all(|it| last.sightings.contains(it))
+    }
+
     /// Keeps what is new or shorter.
     pub fn record(&mut self, seen: Seen, trace: impl FnOnce() -> Trace) {
         let Outcome { found, without_event, sightings, .. } = &mut self.outcome;

@@ -15,6 +15,9 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     let compared: Vec<&str> =
         compared.filter(|it| it.0.covered == Some(Covered::Compared)).map(|it| pair.path(it.1.scalars)).collect();
     let mut text = format!("every reachable state was seen ({} scans)", outcome.scans);
+    if pair.are_settled {
+        text.push_str(", counts past all that they are compared with taken as one");
+    }
     match compared.as_slice() {
         [] => {
             text.push_str(", under every value of the inputs");

@@ -1,0 +1,37 @@
+//! What an advice is for: the pitfalls, the moves, and the counters that it is proved for.
+
+use staunch_frontend::Dialect;
+
+/// Which way a counter counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// CTU
+    Up,
+    /// CTD
+    Down,
+    /// CTUD
+    UpDown,
+}
+
+/// What is said about some pitfalls of a CTU, or of other counters, on a move from one of these systems to one of those.
+pub struct Advice {
+    /// What its cases call it.
+    #[cfg_attr(not(test), expect(dead_code, reason = "a test finds the cases by it"))]
+    pub name: &'static str,
+    pub pitfalls: &'static [usize],
+    pub from: &'static [Dialect],
+    pub to: &'static [Dialect],
+    /// The counters that it is proved for; empty where it says nothing of counting.
+    pub forms: &'static [Form],
+    pub text: &'static str,
+}
+
+impl Advice {
+    pub const fn of(self, forms: &'static [Form]) -> Self {
+        Self { forms, ..self }
+    }
+
+    pub fn is_for(&self, form: Form) -> bool {
+        self.forms.is_empty() || self.forms.contains(&form)
+    }
+}

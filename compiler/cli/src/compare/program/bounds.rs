@@ -1,0 +1,276 @@
+//! Which counts matter only by comparisons with constants, and between which constants: a CTU above all of them and above
+//! every preset stays above them until it is reset, and a CTD below them stays below until it is loaded.
+//!
+//! What is not understood leaves a counter out. A counter is known by its declaration. Where a way leads to one through a
+//! parameter or a reference, or a copy holds one, the declaration is not known: then no counter of that type has bounds.
+
+use super::walked::Name;
+use staunch_ir::visit::{self, Access};
+use staunch_ir::{
+    BlockId, Conversion, Expr, ExprKind, FieldId, Op, Place, Program, Projection, Root, Routine, Statement,
+    StatementKind, Type, Value, reference,
+};
+use staunch_runtime::{BlockInfo, Family, PinRole, Repr};
+use std::collections::{HashMap, HashSet};
+
+/// All that a count is compared with, and 0, lies from `least` to `greatest`; but for resets and loads it goes one way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Bounds {
+    pub least: i128,
+    pub greatest: i128,
+    pub rises: bool,
+    pub falls: bool,
+}
+
+impl Bounds {
+    pub fn add(&mut self, number: i128) {
+        self.least = self.least.min(number);
+        self.greatest = self.greatest.max(number);
+    }
+}
+
+/// By the declarations of the counters that have bounds.
+pub fn of(program: &Program) -> HashMap<Name, Bounds> {
+    let mut walk = Walk { program, found: HashMap::new(), open: HashSet::new(), open_types: HashSet::new() };
+    for routine in &program.routines {
+        visit::statements(&routine.body, &mut |it| walk.statement(routine, it));
+    }
+    for (owner, field) in reference::reached(program) {
+        walk.open_in(program.structure(owner).fields[field.index()].ty);
+    }
+    let Walk { mut found, open, open_types, .. } = walk;
+    found.retain(|name, (block, it)| !open.contains(name) && !open_types.contains(block) && it.rises != it.falls);
+    found.into_iter().map(|(name, (_, it))| (name, it)).collect()
+}
+
+struct Walk<'p> {
+    program: &'p Program,
+    found: HashMap<Name, (BlockId, Bounds)>,
+    /// Counters that are used in a way that is not understood.
+    open: HashSet<Name>,
+    /// Types of counters that are used so, it is not known which.
+    open_types: HashSet<BlockId>,
+}
+
+/// A counter, or a pin of one.
+#[derive(Clone, Copy, Debug)]
+struct Counter {
+    block: BlockId,
+    pin: Option<FieldId>,
+    /// Its declaration, where it is known.
+    name: Option<Name>,
+}
+
+impl Counter {
+    fn role(self) -> Option<PinRole> {
+        self.block.info().pins.get(self.pin?.index())?.role
+    }
+}
+
+impl Walk<'_> {
+    fn statement(&mut self, routine: &Routine, statement: &Statement) {
+        let mut understood = Vec::new();
+        visit::all_exprs(statement, &mut |it| {
+            understood.extend(self.comparison(routine, it));
+            if let ExprKind::AddressOf(place) = &it.kind {
+                self.access(routine, place, Access::Borrow);
+            }
+        });
+        match &statement.kind {
+            StatementKind::Case { selector, arms, .. } => {
+                if let Some((name, place)) = self.count(routine, selector) {
+                    let labels = arms.iter().flat_map(|it| &it.labels).flat_map(|it| [it.0, it.1]);
+                    labels.for_each(|it| self.compared(name, it));
+                    understood.push(place);
+                }
+            }
+            StatementKind::Assign { target, value } => understood.extend(self.assigned(routine, target, value)),
+            StatementKind::CallBlock { block, instruction, inputs } => {
+                self.call(routine, block, *instruction, inputs);
+                understood.push(block);
+            }
+            // The routine's own statements are walked for themselves.
+            StatementKind::Call { instance, .. } => understood.extend(instance),
+            StatementKind::If { .. }
+            | StatementKind::For(_)
+            | StatementKind::Loop { .. }
+            | StatementKind::External(_)
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Try { .. }
+            | StatementKind::Turn
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Fault(_) => {}
+        }
+        visit::accesses(statement, &mut |place, access| {
+            if !understood.iter().any(|it| std::ptr::eq(*it, place)) {
+                self.access(routine, place, access);
+            }
+        });
+    }
+
+    /// What is not one of the uses that are understood.
+    fn access(&mut self, routine: &Routine, place: &Place, access: Access) {
+        let Some(counter) = self.counter(routine, place) else { return self.open_in(place.ty) };
+        let is_harmless = match counter.role() {
+            Some(PinRole::Count) => false,
+            Some(PinRole::Preset) => access == Access::Read,
+            Some(_) | None => counter.pin.is_some(),
+        };
+        match counter.name {
+            Some(_) if is_harmless => {}
+            Some(name) => _ = self.open.insert(name),
+            None => _ = self.open_types.insert(counter.block),
+        }
+    }
+
+    /// The counter that a place is or is a pin of.
+    fn counter(&self, routine: &Routine, place: &Place) -> Option<Counter> {
+        let is_declared = matches!(place.root, Root::Instance | Root::Globals)
+            && !place.projections.iter().any(|it| matches!(it, Projection::Deref { .. }));
+        let (mut ty, mut name) = (self.program.root_type(routine, place.root)?, None);
+        for projection in &place.projections {
+            match (projection, ty) {
+                (Projection::Field(field), Type::Struct(owner)) => name = Some(Name::Field(owner, *field)),
+                (Projection::Field(pin), Type::Block(block)) => {
+                    let counter = Counter { block, pin: Some(*pin), name: name.filter(|_| is_declared) };
+                    return counts(block).then_some(counter);
+                }
+                (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => {}
+            }
+            ty = self.program.part(ty, projection)?;
+        }
+        match ty {
+            Type::Block(block) if counts(block) => {
+                Some(Counter { block, pin: None, name: name.filter(|_| is_declared) })
+            }
+            _ => None,
+        }
+    }
+
+    /// What may be read and written through a place of this type.
+    fn open_in(&mut self, ty: Type) {
+        match ty {
+            Type::Block(block) => _ = self.open_types.insert(block),
+            Type::Array(id) => self.open_in(self.program.array(id).element),
+            Type::Struct(id) => self.program.structure(id).fields.iter().for_each(|it| self.open_in(it.ty)),
+            Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) => {}
+        }
+    }
+
+    fn call(&mut self, routine: &Routine, block: &Place, instruction: usize, inputs: &[Expr]) {
+        let Some(Counter { block, name, .. }) = self.counter(routine, block) else { return };
+        let info = block.info();
+        // A count that turns round at its limit is not past all from there on, and a kept one is a variable as well.
+        let is_followed = info.instructions.len() == 1 && info.facts.kept.is_none() && !turns(info);
+        let Some(name) = name.filter(|_| is_followed && instruction == 0) else {
+            self.open_types.insert(block);
+            return;
+        };
+        let bounds = self.bounds(name, block);
+        bounds.rises = info.pin_for(PinRole::Up).is_some();
+        bounds.falls = info.pin_for(PinRole::Down).is_some();
+        let presets = info.inputs().zip(inputs).filter(|it| it.0.role == Some(PinRole::Preset));
+        presets.for_each(|it| self.preset(routine, (name, block), it.1));
+    }
+
+    fn bounds(&mut self, name: Name, block: BlockId) -> &mut Bounds {
+        &mut self.found.entry(name).or_insert((block, Bounds::default())).1
+    }
+
+    fn compared(&mut self, (name, block): (Name, BlockId), number: i128) {
+        self.bounds(name, block).add(number);
+    }
+
+    /// A preset that is assigned.
+    fn assigned<'s>(&mut self, routine: &Routine, target: &'s Place, value: &Expr) -> Option<&'s Place> {
+        let counter = self.counter(routine, target)?;
+        let name = counter.name.filter(|_| counter.role() == Some(PinRole::Preset))?;
+        self.preset(routine, (name, counter.block), value);
+        Some(target)
+    }
+
+    fn preset(&mut self, routine: &Routine, (name, block): (Name, BlockId), value: &Expr) {
+        if let ExprKind::Load(place) = &value.kind
+            && let Some(own) = self.counter(routine, place)
+            && own.name == Some(name)
+            && own.role() == Some(PinRole::Preset)
+        {
+            // It stays as it is.
+            return;
+        }
+        let (least, greatest) = self.range(value);
+        let bounds = self.bounds(name, block);
+        bounds.add(least);
+        bounds.add(greatest);
+    }
+
+    /// The values that an expression may have, as far as its type says.
+    fn range(&self, value: &Expr) -> (i128, i128) {
+        let whole = |ty: Type| self.whole(ty).unwrap_or((i128::MIN, i128::MAX));
+        match &value.kind {
+            ExprKind::Const(it) => it.as_integer().map_or_else(|| whole(value.ty), |it| (it, it)),
+            ExprKind::Load(place) => self.program.range(place.ty).unwrap_or_else(|| whole(place.ty)),
+            ExprKind::Convert(Conversion::Same | Conversion::Value, inner) => {
+                let (inner, all) = (self.range(inner), whole(value.ty));
+                if all.0 <= inner.0 && inner.1 <= all.1 { inner } else { all }
+            }
+            ExprKind::Convert(..)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..) => whole(value.ty),
+        }
+    }
+
+    fn whole(&self, ty: Type) -> Option<(i128, i128)> {
+        self.program.repr(ty).and_then(Repr::range)
+    }
+
+    /// A comparison of a count with a constant, and where it reads that.
+    fn comparison<'e>(&mut self, routine: &Routine, expr: &'e Expr) -> Option<&'e Place> {
+        let ExprKind::Apply(Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne, operands) = &expr.kind else {
+            return None;
+        };
+        let [a, b] = operands.as_slice() else { return None };
+        [(a, b), (b, a)].into_iter().find_map(|(own, other)| {
+            let number = other.as_const().and_then(Value::as_integer)?;
+            let (name, place) = self.count(routine, own)?;
+            self.compared(name, number);
+            Some(place)
+        })
+    }
+
+    /// The counter whose count an expression is, in its own type or one that holds all of its values.
+    fn count<'e>(&self, routine: &Routine, expr: &'e Expr) -> Option<((Name, BlockId), &'e Place)> {
+        match &expr.kind {
+            ExprKind::Load(place) => {
+                let counter = self.counter(routine, place)?;
+                let name = counter.name.filter(|_| counter.role() == Some(PinRole::Count))?;
+                Some(((name, counter.block), place))
+            }
+            ExprKind::Convert(Conversion::Same | Conversion::Value, inner) => {
+                let (from, to) = (self.whole(inner.ty)?, self.whole(expr.ty)?);
+                if to.0 <= from.0 && from.1 <= to.1 { self.count(routine, inner) } else { None }
+            }
+            ExprKind::Convert(..)
+            | ExprKind::Const(_)
+            | ExprKind::Text(_)
+            | ExprKind::Aggregate(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::Apply(..)
+            | ExprKind::ApplyText(..) => None,
+        }
+    }
+}
+
+fn counts(block: BlockId) -> bool {
+    block.info().pin_for(PinRole::Count).is_some()
+}
+
+/// Whether a count turns round at the limit of its type.
+fn turns(info: &BlockInfo) -> bool {
+    info.family == Family::Logix
+}

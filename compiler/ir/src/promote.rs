@@ -1,0 +1,336 @@
+//! Scalars that a loop works on are in locals while it runs.
+//!
+//! ```text
+//! FOR state.i := 1 TO 16 DO              i := 1 ...
+//!     state.sum := state.sum + a[state.i]   sum := state.sum
+//! END_FOR                                FOR i := 1 TO 16 DO sum := sum + a[i] END_FOR
+//!                                        state.i := i; state.sum := sum
+//! ```
+//!
+//! It applies to a loop that cannot fault, calls no routine, takes no address and does not return: nobody sees the state
+//! before the loop has ended. A variable is taken if all that the loop touches is either this variable or, whatever indices
+//! and references are, another one. The counter of a loop that takes its turns before the first one stays where it is: a
+//! fault there shows the counter's first value.
+//!
+//! A back end then has the variables in registers, where it would have to store them in each turn, since an element of an
+//! array, or what a reference leads to, might be the same storage. That an index is within its bounds is also known more
+//! often: a local counter is private to its loop.
+
+mod set_first;
+
+use crate::alias::{Alias, Frame, alias};
+use crate::effects::{Rules, statement_faults};
+use crate::faults::code_faults;
+use crate::loops::{checked_locals, is_private};
+use crate::visit::{self, Access, Rewrite};
+use crate::{
+    Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
+    StatementKind, Taking, Type, Value,
+};
+use set_first::is_set_first;
+use staunch_runtime::Repr;
+
+/// A loop that touches more places than this stays: each is compared with each.
+const MOST_PLACES: usize = 128;
+/// Of one routine.
+const MOST_LOCALS: usize = 256;
+
+/// What a back end gains by.
+#[expect(missing_debug_implementations, reason = "it holds a function, and lives for one question")]
+#[derive(Clone, Copy)]
+pub struct Gain<'a> {
+    /// Whether a statement may be in such a loop.
+    pub suits: &'a dyn Fn(&Statement) -> bool,
+    /// Whether variables are taken that the loop only reads, while it stores elements of arrays.
+    pub of_reads: bool,
+}
+
+impl Gain<'_> {
+    /// Of all that can be.
+    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true };
+}
+
+/// The program with such loops.
+#[must_use]
+pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
+    let mut program = program.clone();
+    for at in 0..program.routines.len() {
+        let checked = checked_locals(&program.routines[at]);
+        let mut body = std::mem::take(&mut program.routines[at].body);
+        let mut routine = program.routines[at].clone();
+        let declared = routine.locals.len();
+        let around = Vec::new();
+        Promoter { program: &program, gain, routine: &mut routine, declared, checked, around }.block(&mut body);
+        program.routines[at] = Routine { body, ..routine };
+    }
+    program
+}
+
+const RULES: Rules = Rules { operation_faults: code_faults, drops_checks: true, ..Rules::PLAIN };
+
+struct Promoter<'p> {
+    program: &'p Program,
+    gain: Gain<'p>,
+    /// Without its body.
+    routine: &'p mut Routine,
+    /// How many locals it had.
+    declared: usize,
+    /// Of each local that was declared, whether its values are always within its subrange.
+    checked: Vec<bool>,
+    /// The private loops around, without their bodies.
+    around: Vec<For>,
+}
+
+/// A variable that a loop works on.
+struct Candidate {
+    place: Place,
+    local: LocalId,
+    is_written: bool,
+}
+
+/// What a loop touches, each variable once.
+#[derive(Default)]
+struct Touched(Vec<Touch>);
+
+struct Touch {
+    place: Place,
+    is_written: bool,
+    is_borrowed: bool,
+}
+
+impl Promoter<'_> {
+    fn block(&mut self, block: &mut Block) {
+        let statements = std::mem::take(block);
+        for mut statement in statements {
+            if is_loop(&statement) && self.promote(&mut statement, block) {
+                continue;
+            }
+            let head = private_head(&statement);
+            let depth = self.around.len();
+            self.around.extend(head);
+            statement.kind.blocks_mut().into_iter().for_each(|it| self.block(it));
+            self.around.truncate(depth);
+            block.push(statement);
+        }
+    }
+
+    /// Appends the loop with its variables in locals to `block`, if that can be.
+    fn promote(&mut self, statement: &mut Statement, block: &mut Block) -> bool {
+        if !self.is_closed(statement) {
+            return false;
+        }
+        let count = self.routine.locals.len();
+        let candidates = self.candidates(statement);
+        let mut promoted = statement.clone();
+        in_locals(&Frame::of(self.program, self.routine), &mut promoted, &candidates);
+        if !candidates.iter().any(|it| it.is_written) || self.faults(&promoted) {
+            self.routine.locals.truncate(count);
+            return false;
+        }
+        let at = statement.at;
+        for it in candidates.iter().filter(|it| !is_set_first(statement, &it.place)) {
+            block.push(Statement::assign(it.as_local(), Expr::load(it.place.clone(), at), at));
+        }
+        block.push(promoted);
+        for it in candidates.iter().filter(|it| it.is_written) {
+            block.push(Statement::assign(it.place.clone(), Expr::load(it.as_local(), at), at));
+        }
+        true
+    }
+
+    /// Whether nothing but its own statements runs in a loop, and it is left at its end alone.
+    fn is_closed(&self, statement: &Statement) -> bool {
+        let mut closed = true;
+        visit::statements(std::slice::from_ref(statement), &mut |it| {
+            closed = closed && is_plain(&it.kind) && (self.gain.suits)(it);
+            visit::all_exprs(it, &mut |it| closed &= !matches!(it.kind, ExprKind::AddressOf(_)));
+        });
+        closed
+    }
+
+    /// The variables that the loop touches and nothing else in it can be, each with a local of its own.
+    fn candidates(&mut self, statement: &Statement) -> Vec<Candidate> {
+        let Some(Touched(touched)) = Touched::by(statement) else { return Vec::new() };
+        let stores_element = |it: &Touch| it.is_changed() && it.place.indices().next().is_some();
+        let takes_reads = self.gain.of_reads && touched.iter().any(stores_element);
+        let frame = Frame::of(self.program, self.routine);
+        let is_taken = |(at, it): &(usize, &Touch)| {
+            let is_useful = it.is_written || takes_reads && !self.is_counter_around(&it.place);
+            let can_be = is_useful && !it.is_borrowed && self.is_scalar_variable(&it.place);
+            let is_apart =
+                |(other, of): (usize, &Touch)| other == *at || alias(&frame, &of.place, &it.place) == Alias::No;
+            can_be && !is_counter_of_turns(statement, &it.place) && touched.iter().enumerate().all(is_apart)
+        };
+        let taken: Vec<&Touch> = touched.iter().enumerate().filter(is_taken).map(|(_, it)| it).collect();
+        let mut candidates = Vec::new();
+        for it in taken {
+            if let Some(local) = self.local(&it.place, &candidates) {
+                candidates.push(Candidate { place: it.place.clone(), local, is_written: it.is_written });
+            }
+        }
+        candidates
+    }
+
+    /// Whether a back end has it in a register.
+    fn is_counter_around(&self, place: &Place) -> bool {
+        self.around.iter().any(|it| it.counter.is_same_variable(place))
+    }
+
+    fn is_scalar_variable(&self, place: &Place) -> bool {
+        let is_stored = match place.root {
+            Root::Instance | Root::Globals => !place.projections.is_empty(),
+            Root::Param(_) => true,
+            Root::Local(_) => false,
+        };
+        let is_named = place.projections.iter().all(|it| matches!(it, Projection::Field(_)));
+        is_stored && is_named && matches!(place.ty, Type::Elementary(_) | Type::Enum(_))
+    }
+
+    /// A local for a variable. Where a routine has many, they are those of loops before.
+    fn local(&mut self, place: &Place, taken: &[Candidate]) -> Option<LocalId> {
+        let (name, ty) = (self.name(place), place.ty);
+        let count = self.routine.locals.len();
+        if count < self.declared + MOST_LOCALS {
+            let zero = self.program.repr(ty).map_or(Value::Bool(false), Repr::zero);
+            self.routine.locals.push(Local { name, ty, initial: Const::Scalar(zero), doc: None });
+            return Some(LocalId::next(count));
+        }
+        (self.declared..count).map(LocalId::next).find(|id| {
+            let local = &self.routine.locals[id.index()];
+            local.name == name && local.ty == ty && !taken.iter().any(|it| it.local == *id)
+        })
+    }
+
+    /// As the variable, or as the last member on the way to it.
+    fn name(&self, place: &Place) -> String {
+        let mut ty = Frame::of(self.program, self.routine).root_type(place.root);
+        let mut name = match place.root {
+            Root::Param(id) => self.routine.params[id.index()].name.clone(),
+            Root::Instance | Root::Globals | Root::Local(_) => String::new(),
+        };
+        for projection in &place.projections {
+            if let (Some(Type::Struct(id)), Projection::Field(field)) = (ty, projection) {
+                name.clone_from(&self.program.structure(id).fields[field.index()].name);
+            }
+            ty = ty.and_then(|it| self.program.part(it, projection));
+        }
+        name
+    }
+
+    /// Whether the loop can fault after it has begun, or before by what its head evaluates.
+    fn faults(&self, statement: &Statement) -> bool {
+        let mut begun = statement.clone();
+        match &mut begun.kind {
+            StatementKind::For(it) => it.taking = Taking::Each,
+            StatementKind::Loop { count: Some(it), .. } => it.taking = Taking::Each,
+            _ => {}
+        }
+        let mut checked = self.checked.clone();
+        checked.resize(self.routine.locals.len(), false);
+        statement_faults(self.program, &RULES, self.routine, (self.around.iter().collect(), checked), &begun)
+    }
+}
+
+impl Touched {
+    /// `None` where there are too many.
+    fn by(statement: &Statement) -> Option<Self> {
+        let mut touched = Self::default();
+        let mut see = |it: &Statement| visit::accesses(it, &mut |place, access| touched.add(place, access));
+        visit::statements(std::slice::from_ref(statement), &mut see);
+        (touched.0.len() <= MOST_PLACES).then_some(touched)
+    }
+
+    fn add(&mut self, place: &Place, access: Access) {
+        if self.0.len() > MOST_PLACES {
+            return;
+        }
+        let at = self.0.iter().position(|it| it.place.is_same_variable(place)).unwrap_or(self.0.len());
+        if at == self.0.len() {
+            self.0.push(Touch { place: place.clone(), is_written: false, is_borrowed: false });
+        }
+        self.0[at].is_written |= access == Access::Write;
+        self.0[at].is_borrowed |= access == Access::Borrow;
+    }
+}
+
+impl Touch {
+    fn is_changed(&self) -> bool {
+        self.is_written || self.is_borrowed
+    }
+}
+
+impl Candidate {
+    fn as_local(&self) -> Place {
+        Place::local(self.local, self.place.ty)
+    }
+}
+
+fn is_loop(statement: &Statement) -> bool {
+    matches!(statement.kind, StatementKind::For(_) | StatementKind::Loop { .. })
+}
+
+/// Whether a statement runs nothing that is elsewhere, and leaves no more than a loop.
+fn is_plain(kind: &StatementKind) -> bool {
+    match kind {
+        StatementKind::Assign { .. }
+        | StatementKind::If { .. }
+        | StatementKind::Case { .. }
+        | StatementKind::Loop { .. }
+        | StatementKind::For(_)
+        | StatementKind::Exit
+        | StatementKind::Continue
+        | StatementKind::CallBlock { .. } => true,
+        StatementKind::Try { .. }
+        | StatementKind::Turn
+        | StatementKind::Return
+        | StatementKind::Call { .. }
+        | StatementKind::External(_)
+        | StatementKind::PrescanBlock { .. }
+        | StatementKind::Fault(_) => false,
+    }
+}
+
+/// Its counter, which a fault of taking turns shows at its first value.
+fn is_counter_of_turns(statement: &Statement, place: &Place) -> bool {
+    matches!(&statement.kind, StatementKind::For(it) if it.taking.is_ahead() && it.counter.is_same_variable(place))
+}
+
+fn private_head(statement: &Statement) -> Option<For> {
+    match &statement.kind {
+        StatementKind::For(it) if it.is_private => Some(For { body: Vec::new(), ..(**it).clone() }),
+        _ => None,
+    }
+}
+
+/// Puts the locals in place of the variables, and says which counters are private now.
+fn in_locals(frame: &Frame<'_>, statement: &mut Statement, candidates: &[Candidate]) {
+    let statements = std::slice::from_mut(statement);
+    visit::rewrite(statements, &mut Renamer { candidates });
+    privatise(frame, statements);
+}
+
+fn privatise(frame: &Frame<'_>, block: &mut [Statement]) {
+    for statement in block {
+        if let StatementKind::For(it) = &mut statement.kind {
+            it.is_private |= is_private(frame, &it.counter, &it.body);
+        }
+        statement.kind.blocks_mut().into_iter().for_each(|it| privatise(frame, it));
+    }
+}
+
+struct Renamer<'a> {
+    candidates: &'a [Candidate],
+}
+
+impl Rewrite for Renamer<'_> {
+    fn expr(&mut self, _: &mut Expr) {}
+
+    fn place(&mut self, place: &mut Place) {
+        if let Some(it) = self.candidates.iter().find(|it| it.place.is_same_variable(place)) {
+            *place = Place::local(it.local, place.ty);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
