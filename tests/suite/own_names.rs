@@ -6,7 +6,7 @@ use staunch_runtime::Context;
 use staunch_tests::execute::Executor;
 use staunch_tests::leaf::Leaves;
 use staunch_tests::project;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// How many names a program declares.
@@ -136,10 +136,11 @@ fn try_all(dialect: Dialect, way: &Way, words: &[String], wrong: &mut Vec<String
         return words.len();
     }
     let errors = || compilation.diagnostics.iter().filter(|it| it.severity == Severity::Error);
-    let mut lines = errors().map(|it| sources.get(it.span.file).line(it.span.start));
-    // A word of the language, or one that the dialect keeps for itself: the others are read without it.
-    if let Some(refused) = lines.find_map(|it| declared.get(&it)) {
-        let rest: Vec<_> = words.iter().filter(|it| *it != refused).cloned().collect();
+    let lines = errors().map(|it| sources.get(it.span.file).line(it.span.start));
+    // Words of the language, or that the dialect keeps for itself: the others are read without them.
+    let refused: BTreeSet<_> = lines.filter_map(|it| declared.get(&it)).collect();
+    if !refused.is_empty() {
+        let rest: Vec<_> = words.iter().filter(|it| !refused.contains(it)).cloned().collect();
         return try_all(dialect, way, &rest, wrong);
     }
     if let [word] = words {
