@@ -245,7 +245,7 @@ fn what_does_not_differ_is_not_found() {
     std::fs::write(&accept, "c 2: nobody reads the count past its preset\nc 1: it is fed edges\n").expect("a file");
     let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("`late` (timer, ") && text.contains("both systems run the same block"), "{text}");
+    assert!(text.contains("`late` (timer, ") && text.contains("what the block is given differs"), "{text}");
     let path = program(
         "alike",
         "VAR_INPUT a : BOOL; END_VAR VAR t : TON; n : BOOL; END_VAR\nt(IN := a, PT := T#30ms); n := t.Q;",

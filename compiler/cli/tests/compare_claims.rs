@@ -421,3 +421,24 @@ END_PROGRAM
         assert!(expected == 0 || text.starts_with(&format!("iec and {to} differ after 1 scan:")), "{text}");
     }
 }
+
+/// A number of a TIME is of milliseconds on IEC and OPENPLC4, and of seconds on OPENPLC: that it is given another PT is why
+/// the timer differs, not that it looks at the time in a later call.
+#[test]
+fn a_timer_that_is_given_another_preset_is_not_blamed() {
+    let source = "PROGRAM p
+VAR_INPUT go : BOOL; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+VAR ms : DINT := 1500; t : TON; END_VAR
+t(IN := go, PT := DINT_TO_TIME(ms));
+lamp := t.Q;
+END_PROGRAM
+";
+    let (code, text) = compare("another_preset", source, &["--from", "openplc", "--to", "iec"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("what the block is given differs") && !text.contains("trap 19"), "{text}");
+    let same = source.replace("DINT_TO_TIME(ms)", "T#0s");
+    let (code, text) = compare("same_preset", &same, &["--from", "openplc", "--to", "iec"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Trap 19 (`t`): TON, TOF and TP on OPENPLC, before and from v4.1,"), "{text}");
+}

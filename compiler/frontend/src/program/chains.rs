@@ -7,7 +7,7 @@ use super::order::all_callees;
 use crate::expr::uses::Uses;
 use crate::types::declarations::{Declarations, PouSlot, Slot};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Block, FaultKind, Program, Routine, RoutineId, RoutineKind, StatementKind, Type};
+use staunch_ir::{Block, FaultKind, Program, Routine, RoutineId, RoutineKind, Statement, StatementKind, Type};
 
 /// Copies of all routines together: more are reported as recursion.
 const MAX_COPIES: u64 = 500;
@@ -183,7 +183,7 @@ fn copy(declarations: &mut Declarations<'_>, group: &Group) {
 
 /// Calls of the routines go to those of this level, by a reference to those of the next.
 fn lead(block: &mut Block, level: &FxHashMap<usize, usize>, next: Option<&FxHashMap<usize, usize>>) {
-    for statement in block {
+    for statement in block.iter_mut() {
         if let StatementKind::Call { callee, instance, .. } = &mut statement.kind
             && let Some(same) = level.get(&callee.index())
         {
@@ -195,6 +195,11 @@ fn lead(block: &mut Block, level: &FxHashMap<usize, usize>, next: Option<&FxHash
             }
         }
         statement.kind.blocks_mut().into_iter().for_each(|inner| lead(inner, level, next));
+    }
+    // Nothing is reached after the end of a chain.
+    let is_end = |it: &Statement| matches!(it.kind, StatementKind::Fault(FaultKind::Recursion));
+    if let Some(end) = block.iter().position(is_end) {
+        block.truncate(end + 1);
     }
 }
 

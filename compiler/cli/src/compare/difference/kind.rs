@@ -56,9 +56,7 @@ impl Kind {
     pub const fn reason(self) -> &'static str {
         match self {
             Self::Counter => "what it is given differs, or no trap explains it",
-            Self::Timer | Self::OneShot | Self::Latch => {
-                "both systems run the same block, and what it is given differs"
-            }
+            Self::Timer | Self::OneShot | Self::Latch => "what the block is given differs",
             Self::Width => "the two systems compute or hold it in other types",
             Self::Address => "bits at an address are shared on one of the two systems alone",
             Self::Retention => "one system keeps it",

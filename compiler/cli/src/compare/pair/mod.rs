@@ -402,6 +402,16 @@ impl Pair {
         self.is_other(at, "PT")
     }
 
+    /// Whether a block is given the same PT on both sides, if it has one: else it differs by that.
+    pub fn has_one_preset(&self, at: usize, states: [&[u8]; 2]) -> bool {
+        let preset = |side: usize| {
+            let scalars = &self.sides[side].scalars;
+            let path = format!("{}.PT", scalars.blocks[self.blocks[at][side]].path);
+            scalars.all.iter().position(|it| it.path == path)
+        };
+        preset(0).zip(preset(1)).is_none_or(|(a, b)| self.equal([a, b], states))
+    }
+
     fn is_other(&self, at: usize, pin: &str) -> bool {
         let [a, b] = self.blocks[at];
         let [a, b] = [&self.sides[0].scalars.blocks[a], &self.sides[1].scalars.blocks[b]];

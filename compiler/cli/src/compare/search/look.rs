@@ -68,7 +68,9 @@ fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
     let restarted = (event.is_some() || pair.is_restarted()).then_some(Pitfall::RESTART);
     let pitfall = |at: usize| match () {
         () if pair.is_other_one_shot(at) => Some(Pitfall::FIRST_FALL),
-        () if restarted.is_none() && pair.is_other_timer(at) => Some(Pitfall::LATER_CALL),
+        () if restarted.is_none() && pair.is_other_timer(at) && pair.has_one_preset(at, pair.states()) => {
+            Some(Pitfall::LATER_CALL)
+        }
         () => restarted,
     };
     let parted = |outputs: &[Matched]| {

@@ -231,7 +231,9 @@ fn later_call(pair: &Pair, rows: &[Row]) -> Option<String> {
 fn first_other(pair: &Pair, rows: &[Row], is_other: impl Fn(usize) -> bool) -> Option<String> {
     let parts = |at: usize, block: usize| {
         let outputs = &pair.block_outputs[block];
-        outputs.iter().all(|it| agrees(pair, rows, at, *it)) && outputs.iter().any(|it| !pair.same(*it, &rows[at]))
+        let part =
+            outputs.iter().all(|it| agrees(pair, rows, at, *it)) && outputs.iter().any(|it| !pair.same(*it, &rows[at]));
+        part && pair.has_one_preset(block, rows[at].states.each_ref().map(Vec::as_slice))
     };
     let others: Vec<_> = (0..pair.blocks.len()).filter(|it| is_other(*it)).collect();
     let first = (0..rows.len()).find_map(|at| others.iter().copied().find(|it| parts(at, *it)))?;

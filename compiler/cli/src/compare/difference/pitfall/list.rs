@@ -23,7 +23,7 @@ const PITFALLS: [&str; 20] = [
     "F_TRIG called first with CLK FALSE: OPENPLC sees an edge, the others do not.",
     "CD: OPENPLC4 (OpenPLC from v4.1, Editor 4.2.11 too) counts down when the input falls, the others when it rises.",
     "Both edges of a CTUD in one call: OPENPLC4 counts up, then down, so at PV it counts down; on the others CV stays.",
-    "TON, TOF and TP on OPENPLC4 see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
+    "TON, TOF and TP on OPENPLC, before and from v4.1, see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
     "LD held TRUE: S7 with `s7-ld = \"edge\"` loads PV in its first call; the others in each, so that CV follows PV and is PV when R goes.",
 ];
 

@@ -1,0 +1,178 @@
+//! What is known of a system and not followed, and what its documents leave open.
+
+use super::systems::{MATIEC, SIEMENS_DATES};
+use crate::dialect::Dialect;
+use staunch_ir::Use;
+use staunch_runtime::{Class, Elementary};
+
+/// A rule of a system that its dialect does not follow: a program that has what uses it may compute otherwise there.
+#[derive(Clone, Copy, Debug)]
+pub struct NotFollowed {
+    pub dialect: Dialect,
+    /// What the system does.
+    pub what: &'static str,
+    pub evidence: &'static str,
+    /// What a program has to have for the rule to matter.
+    pub uses: Use,
+}
+
+/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
+pub const NOT_FOLLOWED: &[NotFollowed] = &[
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Time,
+        "32 bits of milliseconds without a sign: less than `T#0s` or more than `T#49d17h2m47s295ms` wraps",
+        CODESYS_TIMES,
+    ),
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Ltime,
+        "64 bits of nanoseconds without a sign: less than `LTIME#0ns` wraps, and it reaches to twice what it reaches to here",
+        CODESYS_TIMES,
+    ),
+    not_followed(Dialect::Codesys, Elementary::Date, "32 bits of seconds since 1970: it ends in 2106", CODESYS_DATES),
+    not_followed(
+        Dialect::Codesys,
+        Elementary::Dt,
+        "32 bits of seconds since 1970: it ends in 2106, and has no parts of a second",
+        CODESYS_DATES,
+    ),
+    not_followed(Dialect::Codesys, Elementary::Tod, "32 bits of milliseconds: it has no parts of one", CODESYS_DATES),
+    not_followed(
+        Dialect::Siemens,
+        Elementary::Time,
+        "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
+        SIEMENS_DATES,
+    ),
+    of_matiec(Use::Type(Elementary::Time), PARTS),
+    of_matiec(Use::Type(Elementary::Dt), PARTS),
+    of_matiec(Use::Type(Elementary::Tod), "it may be negative, or longer than a day: `TOD#00:00:00 - T#1s`"),
+    of_matiec(Use::Type(Elementary::Date), "it may have a time of day: `DINT_TO_DATE(1)`"),
+    of_matiec(Use::Function("DELETE"), BEFORE),
+    of_matiec(Use::Function("REPLACE"), BEFORE),
+    of_matiec(Use::Function("SIN"), LAST_DIGIT),
+    of_matiec(Use::Function("COS"), LAST_DIGIT),
+    of_matiec(Use::Function("TAN"), LAST_DIGIT),
+    of_matiec(Use::Function("ASIN"), LAST_DIGIT),
+    of_matiec(Use::Function("ACOS"), LAST_DIGIT),
+    of_matiec(Use::Function("ATAN"), LAST_DIGIT),
+    of_matiec(Use::Function("EXP"), LAST_DIGIT),
+    of_matiec(Use::Function("LN"), LAST_DIGIT),
+    of_matiec(Use::Function("LOG"), LAST_DIGIT),
+    of_matiec(Use::Operator("**", Class::Num), LAST_DIGIT),
+    of_strucpp(Use::Function("SIN"), LAST_DIGIT),
+    of_strucpp(Use::Function("COS"), LAST_DIGIT),
+    of_strucpp(Use::Function("TAN"), LAST_DIGIT),
+    of_strucpp(Use::Function("ASIN"), LAST_DIGIT),
+    of_strucpp(Use::Function("ACOS"), LAST_DIGIT),
+    of_strucpp(Use::Function("ATAN"), LAST_DIGIT),
+    of_strucpp(Use::Function("EXP"), LAST_DIGIT),
+    of_strucpp(Use::Function("LN"), LAST_DIGIT),
+    of_strucpp(Use::Function("LOG"), LAST_DIGIT),
+    of_strucpp(Use::Operator("**", Class::Num), LAST_DIGIT),
+    of_strucpp(Use::Function("INSERT"), TOO_LONG),
+    of_strucpp(Use::Function("REPLACE"), TOO_LONG),
+    of_strucpp(
+        Use::Conversion(Class::String, Class::Real),
+        "`inf`, `nan` and hexadecimal digits are read, and `_` ends it",
+    ),
+    of_strucpp(
+        Use::Conversion(Class::String, Class::Duration),
+        "each part may be missing: STRING_TO_TIME('12') is T#12ms",
+    ),
+    of_strucpp(
+        Use::Conversion(Class::Elementary, Class::Date),
+        "a TOD may be negative, or longer than a day: INT_TO_TOD(-1)",
+    ),
+    not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
+];
+
+const PARTS: &str = "seconds and nanoseconds are kept apart: `T#500ms + T#500ms = T#1s` is FALSE, and a literal may lack a \
+                     nanosecond: `T#1ms` is 999999 ns on x86-64";
+
+const BEFORE: &str = "the process ends where P is 0";
+
+const LAST_DIGIT: &str = "the C library's: the last digit of an LREAL may be another";
+
+const TOO_LONG: &str = "where the result is longer than the first text may be, the end of what is put in is dropped";
+
+const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
+    NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses }
+}
+
+const fn of_strucpp(uses: Use, what: &'static str) -> NotFollowed {
+    NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses }
+}
+
+const CODESYS_TIMES: &str = "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"";
+const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
+
+const fn not_followed(dialect: Dialect, ty: Elementary, what: &'static str, evidence: &'static str) -> NotFollowed {
+    NotFollowed { dialect, what, evidence, uses: Use::Type(ty) }
+}
+
+/// An edge of a function, of which this is what every program does, and what vendors say of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge {
+    pub dialect: Dialect,
+    pub what: &'static str,
+    pub here: &'static str,
+    pub documented: &'static str,
+}
+
+const fn edge(dialect: Dialect, what: &'static str, here: &'static str, documented: &'static str) -> Edge {
+    Edge { dialect, what, here, documented }
+}
+
+/// Where a vendor leaves a value open, or where no page was found: what is done here is a choice.
+pub const EDGES: &[Edge] = &[
+    edge(
+        Dialect::Codesys,
+        "`MOD` of a negative number",
+        "the dividend's sign, as processors divide",
+        "CODESYS help, \"MOD\": \"a non-negative integer\", without an example; Beckhoff, \"MOD\": the integer remainder",
+    ),
+    edge(
+        Dialect::Codesys,
+        "`SHL`, `SHR` by the type's bits or more",
+        "zeros come in, the sign in `SHR` of a signed one",
+        "CODESYS help and Beckhoff, \"SHL\", \"SHR\": zeros, or `N MOD` the register's bits, as the target has it",
+    ),
+    edge(
+        Dialect::Codesys,
+        "`TRUNC`, `TRUNC_INT` beyond the type",
+        "the low bits",
+        "CODESYS help, \"TRUNC\", \"TRUNC_INT\": undefined, depends on the platform",
+    ),
+    edge(
+        Dialect::Codesys,
+        "`MID`, `INSERT`, `DELETE`, `REPLACE` with a position or count out of range",
+        "acts as the nearest one",
+        "CODESYS, library Standard: nothing",
+    ),
+    edge(
+        Dialect::Logix,
+        "the quotient of an integer and 0",
+        "the dividend",
+        "1756-RM003N, pp. 277 and 281: only the minor fault",
+    ),
+    edge(
+        Dialect::Logix,
+        "`MID`, `INSERT`, `DELETE` with an invalid Start or Quantity",
+        "acts as the nearest one",
+        "Rockwell, \"String Delete (DELETE)\": a minor fault of type 4, code 56; the destination is on no page",
+    ),
+    edge(
+        Dialect::Logix,
+        "an integer with more digits than the real beside it",
+        "the nearest real, of two the even one",
+        "1756-RM006K, p. 543: so; p. 546: the lower bits are truncated",
+    ),
+    edge(
+        Dialect::Siemens,
+        "a conversion to an integer type that does not hold the number",
+        "of a real the nearest value, of an integer the low bits",
+        "no page read says the value; ENO is FALSE",
+    ),
+    edge(Dialect::Cscape, "all of them", "as `iec`", "no page of Horner was found"),
+];
