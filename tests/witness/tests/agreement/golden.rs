@@ -62,8 +62,8 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     }
     let is_computed =
         || ["_TO_", "REAL", "TIME", "TON", "TOF", "TP", "F_TRIG", "F_EDGE", "STRING"].iter().any(|it| has(it));
-    if settings.options.dialect == Dialect::Openplc && is_computed() {
-        return Ok(Verdict::Rejected("values of MATIEC's C".to_owned()));
+    if matches!(settings.options.dialect, Dialect::Openplc | Dialect::Openplc4) && is_computed() {
+        return Ok(Verdict::Rejected("values of OpenPLC's C and C++".to_owned()));
     }
     let family = settings.options.dialect.family();
     // The witness has no prescan of Logix: programs with its counters start without one.
