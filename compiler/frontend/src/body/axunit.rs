@@ -46,7 +46,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         let slot = self.axunit_callee(callee)?;
-        let Some(slot) = self.meant(slot, callee.span, arguments) else {
+        let Some(slot) = self.meant(slot, callee.span, arguments, None) else {
             self.check_arguments(arguments);
             self.left_out.get_or_insert(span);
             return Some(());

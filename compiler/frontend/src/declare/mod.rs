@@ -25,6 +25,7 @@ mod pools;
 mod pou;
 mod pragma;
 mod relative;
+mod rows;
 pub(crate) mod run;
 mod specs;
 pub(crate) mod starts;

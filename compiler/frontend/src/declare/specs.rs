@@ -109,6 +109,9 @@ impl<'s> Declarations<'s> {
             self.table.named_values.extend((names_values && !has("strict")).then_some(id));
         }
         if let Some(initial) = &decl.initial {
+            if self.has_flat_rows(&decl.ty, initial) {
+                return None;
+            }
             resolved.initial = self.initial(initial, &resolved, &scope)?;
         }
         Some(resolved)
@@ -125,7 +128,8 @@ impl<'s> Declarations<'s> {
         self.check_construction(decl, resolved.ty);
         if let Some(initial) = &decl.initial {
             // A refused value has been reported; the type is known all the same.
-            let value = self.initial(initial, &resolved, scope);
+            let is_flat = self.has_flat_rows(&decl.ty, initial);
+            let value = if is_flat { None } else { self.initial(initial, &resolved, scope) };
             resolved.initial = value.unwrap_or(resolved.initial);
         }
         self.count_constants(&mut resolved, decl);
@@ -621,7 +625,7 @@ impl<'s> Declarations<'s> {
         for value in values {
             if let Some(expr) = &value.value {
                 let scope = self.scope_of_values(scope, base, &values[..enumerators.len()], &enumerators);
-                next = self.constant_integer(expr, &scope)?;
+                next = self.constant_of(expr, base, &scope)?;
             }
             let Some(number) = base.repr().integer(next) else {
                 self.report(

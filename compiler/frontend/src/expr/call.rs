@@ -41,7 +41,7 @@ impl<'s> Checker<'_, 's> {
             self.report_no_value(callee, expr.span);
             return None;
         }
-        let what = self.checked_callee(callee, arguments)?;
+        let what = self.checked_callee(callee, arguments, expected)?;
         if let Some((enable, rest)) = self.enable(&what, callee, arguments) {
             let value = self.call_if_enabled(what, enable, callee, &rest, expected, expr.span)?;
             if value.is_none() {
@@ -109,7 +109,7 @@ impl<'s> Checker<'_, 's> {
             }
             return;
         }
-        let what = self.checked_callee(callee, arguments);
+        let what = self.checked_callee(callee, arguments, None);
         if let Some(what) = &what
             && !matches!(what, Callee::Standard(_))
             && let Some((enable, rest)) = self.enable(what, callee, arguments)
@@ -204,14 +204,23 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What is called. Where that is not known, the arguments may hold mistakes of their own.
-    fn checked_callee(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+    fn checked_callee(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+    ) -> Option<Callee<'s>> {
         if self.has_logix_operands(callee, arguments) {
             return None;
         }
         let found = match self.callee(callee, arguments) {
             Some(Callee::Function(slot)) if self.has_untyped_scale(slot, callee, arguments) => None,
-            Some(Callee::Function(slot)) => self.meant(slot, callee.span, arguments).map(Callee::Function),
-            Some(Callee::Routine(slot)) => self.meant_routine(slot, callee, arguments).map(Callee::Routine),
+            Some(Callee::Function(slot)) => {
+                self.meant(slot, callee.span, arguments, expected).map(Callee::Function)
+            },
+            Some(Callee::Routine(slot)) => {
+                self.meant_routine(slot, callee, arguments, expected).map(Callee::Routine)
+            },
             other => other,
         };
         if found.is_none() {

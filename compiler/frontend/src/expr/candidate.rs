@@ -4,7 +4,8 @@
 //! some argument its parameter is closer to what is given, and at none is it farther: a parameter of the argument's
 //! own type is closest, then an integer, real or bit string for one of the same kind; of two others, one whose values
 //! the other has too; one with a type before a generic one.
-//! A number that is written without a type decides where nothing else does, as the type that it has by itself.
+//! A number that is written without a type decides where nothing else does, as the type that it has by itself; if the
+//! call's place does not take what that gives, the one that gives the place's type is meant.
 //! Candidates that are given all their inputs go before those that are not. The call means the one that is better
 //! than all others.
 
@@ -41,21 +42,34 @@ struct Taker {
 
 impl<'s> Checker<'_, 's> {
     /// Of the FUNCTIONs that a name leads to, by the first of them, the one that a call means.
-    pub(crate) fn meant(&mut self, slot: usize, name: Span, arguments: &[ast::Argument<'s>]) -> Option<usize> {
+    pub(crate) fn meant(
+        &mut self,
+        slot: usize,
+        name: Span,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+    ) -> Option<usize> {
         match self.decl.overloads.of(slot) {
-            Some(all) => self.meant_of(&all, name, arguments),
+            Some(all) => self.meant_of(&all, name, arguments, expected),
             None => Some(slot),
         }
     }
 
     /// The one of several that a call means.
-    pub(super) fn meant_of(&mut self, all: &[usize], name: Span, arguments: &[ast::Argument<'s>]) -> Option<usize> {
+    pub(super) fn meant_of(
+        &mut self,
+        all: &[usize],
+        name: Span,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+    ) -> Option<usize> {
         let whole = arguments.last().map_or(name, |it| name.to(it.span));
-        let choice = match self.choices.get(&name) {
+        let expected = expected.and_then(Type::elementary);
+        let choice = match self.choices.get(&(name, expected)) {
             Some(known) => known.clone(),
             None => {
-                let choice = self.choice(all, name, whole, arguments);
-                self.choices.insert(name, choice.clone());
+                let choice = self.choice(all, name, whole, arguments, expected);
+                self.choices.insert((name, expected), choice.clone());
                 choice
             }
         };
@@ -71,7 +85,14 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    fn choice(&mut self, all: &[usize], name: Span, whole: Span, arguments: &[ast::Argument<'s>]) -> Choice {
+    fn choice(
+        &mut self,
+        all: &[usize],
+        name: Span,
+        whole: Span,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Elementary>,
+    ) -> Choice {
         let mut candidates = Vec::new();
         for slot in all {
             candidates.extend(self.candidate(*slot, whole, arguments));
@@ -86,10 +107,27 @@ impl<'s> Checker<'_, 's> {
             [] => Err(Box::new(self.none_fits(all, name))),
             [one] => Ok(one.slot),
             several => {
-                let best = best(several, &typed).or_else(|| best(several, &all_types));
-                let best = best.or_else(|| fewest_defaults(several, &all_types));
-                best.ok_or_else(|| Box::new(self.several_fit(several, name)))
+                let found = best(several, &typed).or_else(|| {
+                    let by_numbers = best(several, &all_types).or_else(|| fewest_defaults(several, &all_types))?;
+                    Some(self.for_its_place(several, by_numbers, expected))
+                });
+                found.ok_or_else(|| Box::new(self.several_fit(several, name)))
             }
+        }
+    }
+
+    /// Where only numbers without a type chose, and what was chosen gives what its place does not take: the one
+    /// candidate that gives the place's type.
+    fn for_its_place(&mut self, candidates: &[Candidate], chosen: usize, expected: Option<Elementary>) -> usize {
+        let Some(expected) = expected else { return chosen };
+        let mut gives = |slot: usize| self.decl.signature(slot)?.result.as_ref()?.1.ty.read().elementary();
+        if gives(chosen).is_none_or(|it| widens(it, expected)) {
+            return chosen;
+        }
+        let mut fitting = candidates.iter().map(|it| it.slot).filter(|it| gives(*it) == Some(expected));
+        match (fitting.next(), fitting.next()) {
+            (Some(only), None) => only,
+            _ => chosen,
         }
     }
 

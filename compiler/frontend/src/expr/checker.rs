@@ -13,7 +13,7 @@ use crate::types::scope::Scope;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Block, Expr, Local, Location, Place, Statement, StatementKind, Type};
+use staunch_ir::{Block, Elementary, Expr, Local, Location, Place, Statement, StatementKind, Type};
 use std::rc::Rc;
 
 /// What was found for a call of FUNCTIONs of one name: it is looked for once, however often the call is looked at.
@@ -46,7 +46,7 @@ pub(crate) struct Checker<'d, 's> {
     /// The calls of which one takes back what the other gives, which are reported as such.
     pub dead_calls: FxHashSet<Span>,
     /// Which of the FUNCTIONs of one name calls mean, by the places of these names.
-    pub choices: FxHashMap<Span, Choice>,
+    pub choices: FxHashMap<(Span, Option<Elementary>), Choice>,
     /// The first statement that makes nothing, because something in it was refused.
     pub left_out: Option<Span>,
     /// What is checked may never be evaluated, as a call whose EN is FALSE: a constant that faults there is no mistake.

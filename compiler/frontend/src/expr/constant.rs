@@ -6,7 +6,7 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, ast};
-use staunch_ir::{Expr, Type};
+use staunch_ir::{Elementary, Expr, Type};
 use std::rc::Rc;
 
 /// The constant `expr`, converted to `target` where there is one; other expressions are refused.
@@ -43,9 +43,19 @@ pub(super) fn is_constant(expr: &Expr) -> bool {
 }
 
 impl<'s> Declarations<'s> {
-    /// A constant whole number: an array bound, a string's length, an enumerator's value.
+    /// A constant whole number: an array bound, a string's length.
     pub fn constant_integer(&mut self, expr: &ast::Expr<'s>, scope: &Rc<Scope<'s>>) -> Option<i128> {
         let value = constant(self, scope, expr, None)?;
+        self.whole_number(&value, expr)
+    }
+
+    /// The value of an enumerator: a constant that a variable of the enumeration's base type may start with.
+    pub fn constant_of(&mut self, expr: &ast::Expr<'s>, base: Elementary, scope: &Rc<Scope<'s>>) -> Option<i128> {
+        let value = constant(self, scope, expr, Some(&Resolved::plain(Type::Elementary(base))))?;
+        self.whole_number(&value, expr)
+    }
+
+    fn whole_number(&mut self, value: &Expr, expr: &ast::Expr<'s>) -> Option<i128> {
         let number = value.as_const().and_then(staunch_ir::Value::as_integer);
         if number.is_none() || value.ty == Type::BOOL {
             self.report(

@@ -40,6 +40,7 @@ impl<'s> Checker<'_, 's> {
         first: usize,
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
     ) -> Option<usize> {
         let all = self.methods_of_call(callee);
         let name = match &callee.kind {
@@ -49,7 +50,7 @@ impl<'s> Checker<'_, 's> {
         match all.as_slice() {
             [] => Some(first),
             [one] => Some(*one),
-            several => self.meant_of(several, name, arguments),
+            several => self.meant_of(several, name, arguments, expected),
         }
     }
 
