@@ -3,6 +3,7 @@
 
 use super::checker::Checker;
 use super::unresolved::{other_dialects_pin, pin_of_data};
+use crate::dialect::block_in;
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast, LiteralValue, StatementKind};
@@ -123,7 +124,8 @@ impl<'s> Checker<'_, 's> {
 
     /// Traps 2 and 12, which show in how a POU uses its counters.
     pub(crate) fn migration_lints(&mut self, body: &[ast::Statement<'s>]) {
-        if !self.scope.variables.iter().any(|it| counts(it.place.ty)) {
+        let is_counter = |ty| counts(ty) || self.counter_in(ty).is_some();
+        if !self.scope.variables.iter().any(|it| is_counter(it.place.ty)) {
             return;
         }
         let mut calls = Vec::new();
@@ -185,9 +187,35 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &'a [ast::Argument<'s>],
     ) -> Option<CounterCall<'a, 's>> {
-        let Ast::Name(name) = callee.kind else { return None };
-        let Type::Block(block) = self.scope.get(name.text)?.place.ty else { return None };
+        let (name, block) = match &callee.kind {
+            Ast::Name(name) => (*name, self.scope.get(name.text)?.place.ty),
+            Ast::Member(base, method) => self.counter_of_data(base, *method)?,
+            _ => return None,
+        };
+        let Type::Block(block) = block else { return None };
         counts(Type::Block(block)).then_some(CounterCall { name: name.text, span: callee.span, block, arguments })
+    }
+
+    /// `c.CTD(…)`, of the data of a counter of S7: the counter that this is a call of.
+    fn counter_of_data(&self, base: &ast::Expr<'s>, method: ast::Name<'s>) -> Option<(ast::Name<'s>, Type)> {
+        let Ast::Name(name) = base.kind else { return None };
+        let data = self.counter_in(self.scope.get(name.text)?.place.ty)?;
+        let numbers = data.info().name.strip_prefix("CTUD")?;
+        let called = format!("{}{numbers}", method.text.to_ascii_uppercase());
+        Some((name, Type::Block(block_in(Family::S7, &called)?)))
+    }
+
+    /// The counter up and down that the library's data of a counter of S7 holds.
+    fn counter_in(&self, ty: Type) -> Option<BlockId> {
+        let Type::Struct(id) = ty else { return None };
+        let slot = self.decl.slot_of_instance(id)?;
+        let is_bundled = self.decl.log.sources.get(self.decl.pous[slot].ast.name.span.file).is_bundled();
+        let is_counter = |it: &BlockId| counts(Type::Block(*it)) && it.info().family == Family::S7;
+        let blocks = self.decl.program.structure(id).fields.iter().filter_map(|it| match it.ty {
+            Type::Block(block) => Some(block),
+            _ => None,
+        });
+        blocks.filter(|_| is_bundled).find(is_counter)
     }
 
     /// `c.CV > PV`, or `c.CV >= 60` with a PV of 50, where `c` stops at PV; `calls` are those of `c`.
@@ -325,14 +353,14 @@ impl<'s> Checker<'_, 's> {
         if matches!(bare(load).kind, Ast::Literal(_)) || member_of(load, "Q").is_some() || self.is_constant(preset) {
             return;
         }
-        let [given, value] = [load, preset].map(|it| self.decl.log.sources.text(bare(it).span));
+        let text = |it: Span| self.decl.log.sources.text(it);
+        let ([given, value], callee) = ([load, preset].map(|it| text(bare(it).span)), text(call.span));
         self.report(
             Diagnostic::new(Code::W0613, at, format!("`{}` may be loaded again while LD is TRUE", call.name))
                 .label(format!("here CV follows `{value}` for as long as this is TRUE"))
                 .note("Siemens' pages say that PV is loaded while LD is 1, and that it is loaded when LD changes to 1")
                 .help(format!(
-                    "load it in one call, as both say: `e(CLK := {given}); {}(LD := e.Q, …)`, with `e : R_TRIG`",
-                    call.name
+                    "load it in one call, as both say: `edge(CLK := {given}); {callee}(LD := edge.Q, …)`, with `edge : R_TRIG`"
                 )),
         );
     }
