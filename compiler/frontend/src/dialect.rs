@@ -439,7 +439,7 @@ impl Dialect {
 
     /// Assigning a FOR counter in its loop is a lint, not an error.
     pub const fn assigns_counters(self) -> bool {
-        matches!(self, Self::Codesys)
+        matches!(self, Self::Codesys | Self::Openplc4)
     }
 }
 

@@ -46,7 +46,10 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<()> {
         let has_texts = self.decl.dialect(span).selects_by_texts();
-        let value = self.typed(selector, None);
+        let value = match self.decl.dialect(span).rules().cuts_selectors() {
+            true => self.operand(selector, None).and_then(|it| self.materialise(it.cut(), None, selector.span)),
+            false => self.typed(selector, None),
+        };
         if let Some(text) = value.as_ref().filter(|it| has_texts && matches!(it.ty, Type::String(_))) {
             return self.case_of_text(text.clone(), arms, otherwise, span);
         }

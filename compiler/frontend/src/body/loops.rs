@@ -94,6 +94,9 @@ impl<'s> Checker<'_, 's> {
         self.counters.push(Counter { head: head.clone(), shown: shown.clone(), depth: self.loops + 1 });
         head.body = self.for_body(shown.as_ref(), &head.counter, body, counter.span);
         self.counters.pop();
+        if shown.is_none() && self.looks_in_each_turn(&head, by, span) {
+            return self.loop_by_turns(head, by, span);
+        }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
         let local = head.counter.clone();
         let made = head.statement(self.at(span));

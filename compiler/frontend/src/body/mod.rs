@@ -4,6 +4,7 @@ mod assertion;
 mod axunit;
 mod case;
 mod case_text;
+mod each_turn;
 mod exception;
 mod external;
 mod jump;

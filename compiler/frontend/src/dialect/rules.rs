@@ -10,9 +10,9 @@ mod systems;
 use super::Dialect;
 use choice::Choice;
 pub use choice::{
-    ByZero, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, MixedNumbers,
-    ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger, RotatedConstant, ShrOfSigned,
-    SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, LoopLimit,
+    MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText, RealToInteger,
+    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber, ToBool,
 };
 pub use followed::{Followed, Rules};
 pub use not_followed::{EDGES, Edge, NOT_FOLLOWED, NotFollowed};
@@ -65,6 +65,11 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.rotated_constant),
         row(|it| &it.functions),
         row(|it| &it.literals),
+        row(|it| &it.second_bool),
+        row(|it| &it.case_selector),
+        row(|it| &it.loop_limit),
+        row(|it| &it.subranges),
+        row(|it| &it.parts_of_milliseconds),
     ]
 }
 

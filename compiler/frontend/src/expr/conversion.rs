@@ -250,7 +250,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Nanoseconds to a unit or back, in LREAL where fractions matter, else in LINT.
-    fn scaled_by(&mut self, op: Op, value: Expr, unit: Time, real: bool, span: Span) -> Option<Expr> {
+    pub(super) fn scaled_by(&mut self, op: Op, value: Expr, unit: Time, real: bool, span: Span) -> Option<Expr> {
         let at = value.at;
         if real {
             let value = self.convert(Conversion::Value, Type::LREAL, value);

@@ -219,7 +219,7 @@ fn integer_type(value: i128, expected: Option<Type>) -> Elementary {
 
 /// A value of the type that its operands give it, whatever it was computed at.
 pub(crate) fn computed(value: Expr, ty: Type) -> Operand {
-    let may_be_wider = |it: Elementary| is_narrow(it) || it == Elementary::Real;
+    let may_be_wider = |it: Elementary| is_narrow(it) || matches!(it, Elementary::Dint | Elementary::Real);
     match ty {
         Type::Elementary(ty) if value.ty != Type::Elementary(ty) && may_be_wider(ty) => Operand::Promoted(value, ty),
         _ => Operand::Typed(value),

@@ -3,12 +3,14 @@
 use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
-use crate::dialect::rules::TimeAsNumber;
+use crate::dialect::Dialect;
+use crate::dialect::rules::{Literals, TimeAsNumber};
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
-use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
+use staunch_ir::{Block, Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
 use staunch_runtime::Class;
+use staunch_runtime::time::MILLISECOND;
 
 const REAL: Type = Type::Elementary(Elementary::Real);
 
@@ -33,6 +35,12 @@ impl<'s> Checker<'_, 's> {
             return self.operand(&ast::Expr { kind: ast::ExprKind::Unary(sign, power), span }, expected);
         }
         let hint = expected.filter(|_| !compares(op));
+        if matches!(op, BinaryOp::And | BinaryOp::Or)
+            && self.context == Context::Body
+            && self.decl.dialect(op_span).rules().skips_second_side()
+        {
+            return self.second_if_it_decides([left, right], op, (op_span, span), hint);
+        }
         // Both sides are checked before giving up, so that one run reports every mistake.
         let a = self.operand(left, hint);
         let Some(mut a) = a else {
@@ -113,7 +121,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn meet(&mut self, sides: Sides, allowed: fn(Elementary, bool) -> bool, wants: &str) -> Option<Meeting> {
         let dialect = self.decl.dialect(sides.span);
         let mixes = dialect.mixes_bits_and_integers();
-        let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, join_in(dialect)) {
+        let own = match common(&sides, [sides.a.ty(), sides.b.ty()], mixes, dialect, join_in(dialect)) {
             Some(ty) if allowed(ty, mixes) => ty,
             _ => {
                 self.report_operands(&sides, wants);
@@ -123,7 +131,7 @@ impl<'s> Checker<'_, 's> {
         let rules = dialect.rules();
         let is_one_type = rules.keeps_one_type() && is_kept(&sides);
         let ty = match rules.promotes_integers() && !is_one_type {
-            true => promoted(&sides, own, rules.promotes_as_c(), rules.ranks_numbers()),
+            true => promoted(&sides, own, dialect),
             false => own,
         };
         let a = self.side(sides.a, ty, sides.left)?;
@@ -484,7 +492,8 @@ impl<'s> Checker<'_, 's> {
                 self.refuse_time_overflow(a.checked_mul(b).is_none(), span)?;
             }
             let count = self.convert(Conversion::Same, ty, count);
-            return self.apply(op, ty, vec![time, count], ty, op_span);
+            let scaled = self.apply(op, ty, vec![time, count], ty, op_span)?;
+            return if op == Op::Div { self.whole_milliseconds(scaled, op_span) } else { Some(scaled) };
         }
         let cuts = self.decl.dialect(span).rules().time_as_number.choice == TimeAsNumber::CutMilliseconds;
         let at_real = cuts && sides.b.computed_at() == Some(REAL);
@@ -498,7 +507,20 @@ impl<'s> Checker<'_, 's> {
             true => self.apply(Op::TruncLint, computed, vec![scaled], Type::LINT, op_span)?,
             false => self.convert(Conversion::Value, Type::LINT, scaled),
         };
-        Some(self.convert(Conversion::Same, ty, lint))
+        let scaled = self.convert(Conversion::Same, ty, lint);
+        self.whole_milliseconds(scaled, op_span)
+    }
+
+    /// A TIME without its parts of a millisecond, where the dialect's have none.
+    fn whole_milliseconds(&mut self, time: Expr, span: Span) -> Option<Expr> {
+        let ty = time.ty;
+        if ty != Type::Elementary(Elementary::Time) || !self.decl.dialect(span).rules().cuts_milliseconds() {
+            return Some(time);
+        }
+        let nanoseconds = self.convert(Conversion::Same, Type::LINT, time);
+        let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, span)?;
+        let whole = self.scaled_by(Op::Mul, milliseconds, MILLISECOND, false, span)?;
+        Some(self.convert(Conversion::Same, ty, whole))
     }
 
     /// `a AND_THEN b`: `b` is evaluated only when it decides.
@@ -517,15 +539,49 @@ impl<'s> Checker<'_, 's> {
         if let Some(known) = self.decided(op, &a, &b) {
             return Some(known);
         }
+        Some(self.decided_by(op, a, (evaluate, b), span))
+    }
+
+    /// What a short-circuit operator gives, of its first side and of the second with what that evaluates.
+    fn decided_by(&mut self, op: BinaryOp, a: Expr, (evaluate, b): (Block, Expr), span: Span) -> Expr {
         let at = self.at(span);
         let result = self.temporary(JOINED, Type::BOOL);
         self.block.push(Statement::assign(result.clone(), a, at));
         let mut decide = evaluate;
         decide.push(Statement::assign(result.clone(), b, at));
         let condition = Expr::load(result.clone(), at);
-        let (then, otherwise) = if op == BinaryOp::AndThen { (decide, Vec::new()) } else { (Vec::new(), decide) };
+        let is_and = matches!(op, BinaryOp::AndThen | BinaryOp::And);
+        let (then, otherwise) = if is_and { (decide, Vec::new()) } else { (Vec::new(), decide) };
         self.push(StatementKind::If { condition, then, otherwise }, span);
-        Some(Expr::load(result, at))
+        Expr::load(result, at)
+    }
+
+    /// AND and OR, which evaluate the second of two BOOLs only where it decides, as `&&` and `||` of C do.
+    fn second_if_it_decides(
+        &mut self,
+        [left, right]: [&ast::Expr<'s>; 2],
+        op: BinaryOp,
+        (op_span, span): (Span, Span),
+        hint: Option<Type>,
+    ) -> Option<Operand> {
+        let a = self.operand(left, hint);
+        let is_bool = a.as_ref().and_then(Operand::ty) == Some(Type::BOOL);
+        let right_hint = a.as_ref().map_or(hint, |it| beside(it, hint));
+        let mut b = None;
+        let evaluate = self.nested(|this| b = this.operand(right, right_hint));
+        let (mut a, mut b) = (a?, b?);
+        let has_effects = !evaluate.is_empty() || b.typed().is_some_and(|it| self.can_fault(it));
+        if !is_bool || b.ty() != Some(Type::BOOL) || !has_effects {
+            self.after(a.typed_mut().as_mut_slice(), |this| {
+                this.block.extend(evaluate);
+                Some(())
+            });
+            let sides = Sides { a, b, left: left.span, right: right.span, op, op_span, span, hint };
+            return self.combine(sides);
+        }
+        self.note_operator(op.text(), &[&a, &b], op_span);
+        let (first, second) = (a.typed_mut()?.clone(), b.typed_mut()?.clone());
+        Some(Operand::Typed(self.decided_by(op, first, (evaluate, second), span)))
     }
 
     /// A short-circuit operator of constants, where a constant is wanted: its value, even if the second would fault and
@@ -597,9 +653,18 @@ fn is_real(operand: &Operand) -> bool {
     }
 }
 
-fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> Option<Elementary> {
+fn common(
+    sides: &Sides,
+    types: [Option<Type>; 2],
+    mixes: bool,
+    dialect: Dialect,
+    join: Join,
+) -> Option<Elementary> {
     let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
-    let literal = |ty: Elementary, it: &Operand| literal_meets(number(ty), ty, it, sides.hint, join);
+    let literal = |ty: Elementary, it: &Operand| {
+        let own = literal_types(ty, dialect);
+        literal_meets((number(ty), ty), it, own, sides.hint, join)
+    };
     match types {
         [Some(Type::Elementary(a)), Some(Type::Elementary(b))] => {
             if a == b {
@@ -615,7 +680,8 @@ fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, join: Join) -> O
 }
 
 /// The type at which sides are computed that give one of `own`, where integers are promoted.
-fn promoted(sides: &Sides, own: Elementary, as_c: bool, ranks: bool) -> Elementary {
+fn promoted(sides: &Sides, own: Elementary, dialect: Dialect) -> Elementary {
+    let (as_c, ranks) = (dialect.rules().promotes_as_c(), dialect.rules().ranks_numbers());
     let calculates = matches!(sides.op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod)
         || as_c && is_junction(sides.op);
     // A promoted value may be negative: it is compared with a UDINT by what it is. C and Logix make a UDINT of it.
@@ -623,10 +689,13 @@ fn promoted(sides: &Sides, own: Elementary, as_c: bool, ranks: bool) -> Elementa
     if as_c && own == Elementary::Real && [&sides.a, &sides.b].into_iter().any(is_double) {
         return Elementary::Lreal;
     }
+    if as_c && (calculates || compares(sides.op)) && own.is_integer() && [&sides.a, &sides.b].into_iter().any(is_long) {
+        return join(own, Elementary::Lint).unwrap_or(own);
+    }
     if !is_narrow(own) && !compared {
         return own;
     }
-    match common(sides, [sides.a.computed_at(), sides.b.computed_at()], true, join) {
+    match common(sides, [sides.a.computed_at(), sides.b.computed_at()], true, dialect, join) {
         Some(ty) if calculates && is_narrow(ty) => Elementary::Dint,
         ty => ty.unwrap_or(own),
     }
@@ -645,11 +714,29 @@ fn is_double(side: &Operand) -> bool {
     matches!(side, Operand::Real { .. }) || side.computed_at() == Some(Type::LREAL)
 }
 
+/// What is a `long` in C, and counts as a shorter integer: `-2147483648`, of which the sign is no part, and what is
+/// computed with that.
+fn is_long(side: &Operand) -> bool {
+    let is_least = matches!(side, Operand::Integer(value) if *value == i128::from(i32::MIN));
+    is_least || side.computed_at() == Some(Type::LINT)
+}
+
+/// The types of which a number is the first that holds it, where the type beside it does not.
+pub(super) fn literal_types(beside: Elementary, dialect: Dialect) -> [Elementary; 4] {
+    let has_sign = !as_number(beside).is_integer() || as_number(beside).repr().is_signed();
+    match dialect.rules().literals.choice {
+        Literals::Smallest if !has_sign => [Elementary::Usint, Elementary::Uint, Elementary::Udint, Elementary::Ulint],
+        Literals::OfTheirPlace | Literals::OfC | Literals::Immediate | Literals::Smallest => {
+            [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint]
+        }
+    }
+}
+
 /// The type at which a literal meets a typed operand: the operand's, if the literal fits it.
 fn literal_meets(
-    number: Elementary,
-    ty: Elementary,
+    (number, ty): (Elementary, Elementary),
     literal: &Operand,
+    wider: [Elementary; 4],
     hint: Option<Type>,
     join: Join,
 ) -> Option<Elementary> {
@@ -658,7 +745,6 @@ fn literal_meets(
             if ty.is_real() || ty.repr().integer(*value).is_some() {
                 return Some(ty);
             }
-            let wider = [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint];
             let own = wider.into_iter().find(|it| it.repr().integer(*value).is_some())?;
             join(number, own)
         }

@@ -5,7 +5,8 @@
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::operand::Operand;
-use super::operator::beside;
+use super::operator::{beside, literal_types};
+use crate::dialect::Dialect;
 use crate::types::coercion::{Join, as_number, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Block, Conversion, Elementary, Expr, Section, Type};
@@ -285,6 +286,7 @@ impl<'s> Checker<'_, 's> {
             Some(ty) => widened_by_literals(
                 self.beside_negatives(class, ty, literals(), expected, name.span),
                 literals(),
+                self.decl.dialect(name.span),
                 join_in(self.decl.dialect(name.span)),
             ),
             None if class == Class::Real => expected.unwrap_or(Type::LREAL),
@@ -332,7 +334,7 @@ impl<'s> Checker<'_, 's> {
         let types = operands.clone().filter_map(|it| it.computed_at()?.elementary());
         let ty = types.reduce(|a, b| if a == b { a } else { meet(a, b).unwrap_or(a) }).unwrap_or(it);
         let ty = if it.is_integer() { as_number(ty) } else { ty };
-        widened_by_literals(Type::Elementary(ty), operands, meet)
+        widened_by_literals(Type::Elementary(ty), operands, self.decl.dialect(span), meet)
     }
 
     /// The operand at the type that was found for all.
@@ -512,7 +514,12 @@ fn real(ty: Type, join: Join) -> Type {
     }
 }
 
-fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>, join: Join) -> Type {
+fn widened_by_literals<'o>(
+    ty: Type,
+    operands: impl Iterator<Item = &'o Operand>,
+    dialect: Dialect,
+    join: Join,
+) -> Type {
     let Type::Elementary(mut ty) = ty else { return ty };
     for operand in operands {
         let real = matches!(operand, Operand::Real { .. });
@@ -523,8 +530,7 @@ fn widened_by_literals<'o>(ty: Type, operands: impl Iterator<Item = &'o Operand>
             && ty.is_integer()
             && ty.repr().integer(*value).is_none()
         {
-            let own = [Elementary::Int, Elementary::Dint, Elementary::Lint];
-            let own = own.into_iter().find(|it| it.repr().integer(*value).is_some());
+            let own = literal_types(ty, dialect).into_iter().find(|it| it.repr().integer(*value).is_some());
             ty = own.and_then(|own| join(ty, own)).unwrap_or(ty);
         }
     }

@@ -402,6 +402,8 @@ pub enum Literals {
     OfTheirPlace,
     OfC,
     Immediate,
+    /// Of its place's type, as long as that holds it.
+    Smallest,
 }
 
 impl Choice for Literals {
@@ -412,6 +414,101 @@ impl Choice for Literals {
             Self::OfTheirPlace => "of its place's type",
             Self::OfC => "C's `double`, `int` or `long`",
             Self::Immediate => "of its place's type; two integers together are DINTs",
+            Self::Smallest => {
+                "of its place's type; beside an unsigned number or bits that do not hold it, the smallest unsigned type"
+            }
+        }
+    }
+}
+
+/// When AND and OR evaluate the second of two BOOLs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SecondBool {
+    Always,
+    IfItDecides,
+}
+
+impl Choice for SecondBool {
+    const RULE: &'static str = "the right side of AND and OR of BOOLs";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Always => "evaluated",
+            Self::IfItDecides => "evaluated where the left one does not decide; of `AND(…)` and `OR(…)` always",
+        }
+    }
+}
+
+/// What CASE compares with its labels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CaseSelector {
+    AsComputed,
+    Cut,
+}
+
+impl Choice for CaseSelector {
+    const RULE: &'static str = "what CASE selects by";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::AsComputed => "the value as it is computed",
+            Self::Cut => "the value cut to its own type",
+        }
+    }
+}
+
+/// Whether a variable of a subrange holds nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subranges {
+    Checked,
+    AsTheirBase,
+}
+
+impl Choice for Subranges {
+    const RULE: &'static str = "a value outside of a subrange";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Checked => "a fault",
+            Self::AsTheirBase => "stored: the type is its base",
+        }
+    }
+}
+
+/// What becomes of parts of a millisecond that TIMEs are computed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PartsOfMilliseconds {
+    Kept,
+    Cut,
+}
+
+impl Choice for PartsOfMilliseconds {
+    const RULE: &'static str = "parts of a millisecond of a TIME";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Kept => "kept: it is nanoseconds",
+            Self::Cut => "cut off where TIMEs are divided, or multiplied by a REAL",
+        }
+    }
+}
+
+/// When FOR looks at its limit and its step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LoopLimit {
+    Once,
+    EachTurn,
+    EachTurnUpward,
+}
+
+impl Choice for LoopLimit {
+    const RULE: &'static str = "limit and step of FOR";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Once => "evaluated once",
+            Self::EachTurn => "read in each turn",
+            Self::EachTurnUpward => "read in each turn; it counts down only by a negative number, not by a variable or CONSTANT",
         }
     }
 }

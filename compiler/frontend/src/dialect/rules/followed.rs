@@ -1,9 +1,9 @@
 //! The choices of one dialect, each with what shows it.
 
 use super::choice::{
-    ByZero, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, MixedNumbers,
-    ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger, RotatedConstant, ShrOfSigned,
-    SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, LoopLimit,
+    MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText, RealToInteger,
+    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber, ToBool,
 };
 
 /// How one dialect computes.
@@ -31,6 +31,11 @@ pub struct Rules {
     pub rotated_constant: Followed<RotatedConstant>,
     pub functions: Followed<Functions>,
     pub literals: Followed<Literals>,
+    pub second_bool: Followed<SecondBool>,
+    pub case_selector: Followed<CaseSelector>,
+    pub loop_limit: Followed<LoopLimit>,
+    pub subranges: Followed<Subranges>,
+    pub parts_of_milliseconds: Followed<PartsOfMilliseconds>,
 }
 
 impl Rules {
@@ -118,6 +123,25 @@ impl Rules {
     /// A number without a type is a double, an int or a long, as in C.
     pub const fn has_literals_of_c(&self) -> bool {
         matches!(self.literals.choice, Literals::OfC)
+    }
+
+    /// AND and OR evaluate the second of two BOOLs only where it decides.
+    pub const fn skips_second_side(&self) -> bool {
+        matches!(self.second_bool.choice, SecondBool::IfItDecides)
+    }
+
+    /// The value that CASE selects by is cut to the type that it counts as.
+    pub const fn cuts_selectors(&self) -> bool {
+        matches!(self.case_selector.choice, CaseSelector::Cut)
+    }
+
+    pub const fn checks_subranges(&self) -> bool {
+        matches!(self.subranges.choice, Subranges::Checked)
+    }
+
+    /// What is computed of TIMEs has whole milliseconds.
+    pub const fn cuts_milliseconds(&self) -> bool {
+        matches!(self.parts_of_milliseconds.choice, PartsOfMilliseconds::Cut)
     }
 
     /// Integers without a type are DINTs together, and wrap.

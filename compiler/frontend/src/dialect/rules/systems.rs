@@ -1,9 +1,9 @@
 //! The rules of each system, with the page or program that shows them.
 
 use super::choice::{
-    ByZero, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, MixedNumbers,
-    ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger, RotatedConstant, ShrOfSigned,
-    SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, LoopLimit,
+    MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText, RealToInteger,
+    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber, ToBool,
 };
 use super::followed::{Followed, Rules};
 
@@ -30,6 +30,11 @@ pub(super) const IEC: Rules = Rules {
     rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page says it"),
     functions: follows(Functions::OfTheStandard, "IEC 61131-3, 6.6.2.5"),
     literals: follows(Literals::OfTheirPlace, "IEC 61131-3, 6.3.3; REAL and LREAL are left to the implementer"),
+    second_bool: follows(SecondBool::Always, "IEC 61131-3, 7.3.2: the implementer may say otherwise"),
+    case_selector: follows(CaseSelector::AsComputed, "IEC 61131-3, table 72"),
+    loop_limit: follows(LoopLimit::Once, "IEC 61131-3, 7.3.3.4.2: the body changes none of them"),
+    subranges: follows(Subranges::Checked, "IEC 61131-3, 6.4.4.4.1: an error"),
+    parts_of_milliseconds: follows(PartsOfMilliseconds::Kept, "IEC 61131-3, 6.3.3.2: left to the implementer"),
 };
 
 /// The choice of another dialect, where no page of the vendor says anything.
@@ -60,6 +65,11 @@ pub(super) const CSCAPE: Rules = Rules {
     rotated_constant: undocumented(IEC.rotated_constant),
     functions: undocumented(IEC.functions),
     literals: undocumented(IEC.literals),
+    second_bool: undocumented(IEC.second_bool),
+    case_selector: undocumented(IEC.case_selector),
+    loop_limit: undocumented(IEC.loop_limit),
+    subranges: undocumented(IEC.subranges),
+    parts_of_milliseconds: undocumented(IEC.parts_of_milliseconds),
 };
 
 pub(super) const CODESYS: Rules = Rules {
@@ -76,6 +86,8 @@ pub(super) const CODESYS: Rules = Rules {
     time_as_number: follows(TimeAsNumber::WholeMilliseconds, "CODESYS help, \"REAL / LREAL conversion\""),
     limit_crossed: follows(LimitCrossed::Maximum, "CODESYS help and Beckhoff, \"LIMIT\": MIN(MAX(IN, Min), Max)"),
     rotated_constant: follows(RotatedConstant::FewestBits, "CODESYS help, \"ROL\", \"ROR\"; Beckhoff, \"ROL\""),
+    literals: follows(Literals::Smallest, "CODESYS help and Beckhoff, \"Typed Literals\": the smallest possible data type"),
+    parts_of_milliseconds: follows(PartsOfMilliseconds::Cut, "CODESYS help, \"TIME, LTIME\": a number of milliseconds"),
     ..IEC
 };
 
@@ -97,6 +109,10 @@ pub(super) const OPENPLC: Rules = Rules {
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),
     literals: follows(Literals::OfC, MATIEC),
+    second_bool: follows(SecondBool::IfItDecides, MATIEC),
+    case_selector: follows(CaseSelector::Cut, MATIEC),
+    loop_limit: follows(LoopLimit::EachTurn, MATIEC),
+    subranges: follows(Subranges::AsTheirBase, MATIEC),
     ..IEC
 };
 
@@ -124,6 +140,9 @@ pub(super) const OPENPLC4: Rules = Rules {
     limit_crossed: follows(LimitCrossed::MinimumFirst, "STruC++ 0.6.1, run: LIMIT(7, 1, 1) is 7"),
     functions: follows(Functions::OfStrucpp, "STruC++ 0.6.1, run: INSERT('ABC', 'X', 1) is 'XABC'"),
     literals: follows(Literals::OfC, "STruC++ 0.6.1, run: `REAL#0.1 - 0.30000001` is -0.200000003"),
+    second_bool: follows(SecondBool::Always, "STruC++ 0.6.1: C++'s `&` and `|`"),
+    subranges: follows(Subranges::AsTheirBase, "STruC++ 0.6.1: a `using` of the base type"),
+    loop_limit: follows(LoopLimit::EachTurnUpward, "STruC++ 0.6.1, run: `FOR i := 5 TO 1 BY STEP` does not run"),
     ..IEC
 };
 
@@ -155,6 +174,7 @@ pub(super) const SIEMENS: Rules = Rules {
     real_of_text: follows(RealOfText::FixedPoint, "S7-1200 manual, 11/2011, p. 247, table 8-33"),
     text_positions: follows(TextPositions::Empty, "S7-1200 manual, 03/2014, tables 8-57, 8-60, 8-63 and 8-66"),
     limit_crossed: follows(LimitCrossed::Value, "S7-1200 manual, \"LIMIT\", ENO status"),
+    parts_of_milliseconds: follows(PartsOfMilliseconds::Cut, SIEMENS_DATES),
     ..IEC
 };
 
