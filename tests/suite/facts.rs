@@ -94,6 +94,16 @@ fn is_value(found: &Read, expected: &str) -> bool {
     }
 }
 
+/// A whole number with its type: what one without a type is, depends on the system.
+fn typed(ty: &str, value: &str) -> String {
+    let is_number = value.strip_prefix('-').unwrap_or(value).bytes().all(|it| it.is_ascii_digit());
+    if is_number && ["INT", "WORD"].iter().any(|it| ty.ends_with(it)) {
+        format!("{ty}#{value}")
+    } else {
+        value.to_owned()
+    }
+}
+
 fn literal(bytes: &[u8]) -> String {
     let one = |it: &u8| match it {
         b'$' | b'\'' | 0..=31 | 127.. => format!("${it:02X}"),
@@ -110,8 +120,11 @@ fn program(facts: &[Fact<'_>]) -> String {
         writeln!(results, "r{number} : {};", fact.ty).unwrap();
         writeln!(body, "r{number} := {expression};").unwrap();
     }
-    let declared: String =
-        variables.iter().enumerate().map(|(at, (ty, value))| format!("v{at} : {ty} := {value};\n")).collect();
+    let declared: String = variables
+        .iter()
+        .enumerate()
+        .map(|(at, (ty, value))| format!("v{at} : {ty} := {};\n", typed(ty, value)))
+        .collect();
     format!("PROGRAM Main\nVAR\n{declared}{results}END_VAR\n{body}END_PROGRAM\n")
 }
 

@@ -14,6 +14,8 @@ pub enum Use {
     Operator(&'static str, Class),
     /// From one class to another, by a function or by itself.
     Conversion(Class, Class),
+    /// A part of the language: `VAR_TEMP`.
+    Part(&'static str),
 }
 
 impl Use {
@@ -21,7 +23,7 @@ impl Use {
     pub fn words(self) -> String {
         match self {
             Self::Type(it) => it.name().to_owned(),
-            Self::Function(name) => name.to_owned(),
+            Self::Function(name) | Self::Part(name) => name.to_owned(),
             Self::Operator(operator, class) => format!("`{operator}` of {}", class.name()),
             Self::Conversion(from, to) => format!("{} to {}", from.name(), to.name()),
         }
@@ -32,7 +34,7 @@ impl Use {
         match (self, found) {
             (Self::Operator(own, class), Self::Operator(other, of)) => own == other && class.contains(of),
             (Self::Conversion(from, to), Self::Conversion(own, other)) => from.contains(own) && to.contains(other),
-            (Self::Type(_) | Self::Function(_), _) => self == found,
+            (Self::Type(_) | Self::Function(_) | Self::Part(_), _) => self == found,
             (Self::Operator(..) | Self::Conversion(..), _) => false,
         }
     }

@@ -1,5 +1,7 @@
 //! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
+use crate::diagnostic::wording::article;
+use crate::dialect::rules::{LIMIT, NOT_FOLLOWED, Use};
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::types::counter::{Counter, Shown};
@@ -177,6 +179,11 @@ impl<'s> Checker<'_, 's> {
         }
         let range = self.decl.program.range(place.ty).or(ty.repr().range())?;
         let step_at = self.at(by.unwrap_or(counter).span);
+        if let (Step::Constant(step), Some(limit)) = (&step, last.as_const().and_then(Value::as_integer))
+            && !(range.0..=range.1).contains(&(limit + step))
+        {
+            self.note_endless(to, ty);
+        }
         let (body, taking) = (Block::new(), Taking::Each);
         let head = For { counter: place, first, last, step, range, is_private: false, body, taking, step_at };
         Some((head, shown))
@@ -198,6 +205,19 @@ impl<'s> Checker<'_, 's> {
                 );
                 None
             }
+        }
+    }
+
+    /// A FOR whose counter has no value beyond its limit: it ends here, and not where it wraps.
+    fn note_endless(&mut self, to: &ast::Expr<'s>, ty: Elementary) {
+        let dialect = self.decl.dialect(to.span);
+        self.note_use(Use::Part(LIMIT), to.span);
+        if NOT_FOLLOWED.iter().any(|it| it.dialect == dialect && it.uses == Use::Part(LIMIT)) {
+            let system = dialect.name().to_ascii_uppercase();
+            let message =
+                format!("on {system} this loop does not end: {} has no value beyond its limit", article(ty.name()));
+            let lint = Diagnostic::new(Code::W0614, to.span, message).label("here the loop ends with this turn");
+            self.report(lint.help("count in a wider type, or leave the loop with EXIT after its last turn"));
         }
     }
 

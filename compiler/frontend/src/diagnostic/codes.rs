@@ -186,5 +186,6 @@ codes! {
     W0609 Warning "a pin has another name on this system";
     W0612 Warning "a counter's own output resets it";
     W0613 Warning "a preset that moves under a load";
+    W0614 Warning "a FOR to its counter's limit";
     W0616 Warning "a count down on the falling edge";
 }

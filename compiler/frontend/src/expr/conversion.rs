@@ -1,6 +1,7 @@
 //! Conversion functions: `INT_TO_REAL`, `TO_REAL`, `REAL_TRUNC_DINT`, `TRUNC`.
 
 use super::checker::Checker;
+use super::operand::Operand;
 use crate::dialect::rules::{DateAsNumber, Functions, Halves, TimeAsNumber, ToBool};
 use crate::names::functions::{self, Converted, How, Rounding};
 use crate::{Code, Diagnostic, Span, ast};
@@ -46,6 +47,13 @@ impl<'s> Checker<'_, 's> {
     fn value_converted(&mut self, value: &ast::Expr<'s>, from: Elementary) -> Option<Expr> {
         let is_computed = matches!(value.bare().kind, ast::ExprKind::Binary(..) | ast::ExprKind::Unary(..));
         let ty = Type::Elementary(from);
+        if is_computed && from.is_integer() && self.decl.dialect(value.span).rules().keeps_one_type() {
+            // STruC++ has one template for all of these, which takes what was computed at 32 bits as it is.
+            return match self.operand(value, Some(ty))? {
+                Operand::Promoted(value, own) if own == from => Some(value),
+                other => self.coerce(other, ty, value.span),
+            };
+        }
         if !is_computed || !from.is_integer() || !self.decl.dialect(value.span).binds_by_assignment() {
             return self.value(value, ty);
         }

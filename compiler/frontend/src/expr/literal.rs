@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use super::real::Real;
+use crate::dialect::rules::Functions;
 use crate::lex::DECIMAL;
 use crate::names::functions::Converted;
 use crate::names::{Found, Meaning, Sense};
@@ -34,7 +35,7 @@ impl<'s> Checker<'_, 's> {
             LiteralValue::Bool(it) => typed(Elementary::Bool, Value::Bool(*it)),
             LiteralValue::Integer { value, .. } => {
                 self.refuse_decimal_base(span)?;
-                Some(Operand::Integer(i128::from(*value)))
+                Some(Operand::Integer(self.rounded_as_double(*value, span)))
             }
             LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
             LiteralValue::Time { ty, nanoseconds } => {
@@ -50,6 +51,19 @@ impl<'s> Checker<'_, 's> {
                 None
             }
         }
+    }
+
+    /// STruC++ keeps a decimal number without a type as a double, and writes it with the fewest digits that name that.
+    fn rounded_as_double(&self, value: u64, span: Span) -> i128 {
+        let text = self.decl.log.sources.text(span);
+        let is_rounded = self.decl.dialect(span).rules().functions.choice == Functions::OfStrucpp;
+        if !is_rounded || value < 1 << 53 || text.contains('#') {
+            return i128::from(value);
+        }
+        let double: Option<f64> = text.replace('_', "").parse().ok();
+        double
+            .and_then(|it| it.to_string().parse::<i128>().ok())
+            .map_or(i128::from(value), |it| it & i128::from(u64::MAX))
     }
 
     /// Reports `T#5m68s`: only the first unit may overflow.

@@ -653,18 +653,9 @@ fn is_real(operand: &Operand) -> bool {
     }
 }
 
-fn common(
-    sides: &Sides,
-    types: [Option<Type>; 2],
-    mixes: bool,
-    dialect: Dialect,
-    join: Join,
-) -> Option<Elementary> {
+fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, dialect: Dialect, join: Join) -> Option<Elementary> {
     let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
-    let literal = |ty: Elementary, it: &Operand| {
-        let own = literal_types(ty, dialect);
-        literal_meets((number(ty), ty), it, own, sides.hint, join)
-    };
+    let literal = |ty: Elementary, it: &Operand| literal_meets((number(ty), ty), it, dialect, sides.hint, join);
     match types {
         [Some(Type::Elementary(a)), Some(Type::Elementary(b))] => {
             if a == b {
@@ -722,10 +713,12 @@ fn is_long(side: &Operand) -> bool {
 }
 
 /// The types of which a number is the first that holds it, where the type beside it does not.
-pub(super) fn literal_types(beside: Elementary, dialect: Dialect) -> [Elementary; 4] {
-    let has_sign = !as_number(beside).is_integer() || as_number(beside).repr().is_signed();
+pub(super) fn literal_types(value: i128, beside: Elementary, dialect: Dialect) -> [Elementary; 4] {
+    let has_no_sign = value >= 0 && as_number(beside).is_integer() && beside.repr().is_unsigned();
     match dialect.rules().literals.choice {
-        Literals::Smallest if !has_sign => [Elementary::Usint, Elementary::Uint, Elementary::Udint, Elementary::Ulint],
+        Literals::Smallest if has_no_sign => {
+            [Elementary::Usint, Elementary::Uint, Elementary::Udint, Elementary::Ulint]
+        }
         Literals::OfTheirPlace | Literals::OfC | Literals::Immediate | Literals::Smallest => {
             [Elementary::Int, Elementary::Dint, Elementary::Lint, Elementary::Ulint]
         }
@@ -736,7 +729,7 @@ pub(super) fn literal_types(beside: Elementary, dialect: Dialect) -> [Elementary
 fn literal_meets(
     (number, ty): (Elementary, Elementary),
     literal: &Operand,
-    wider: [Elementary; 4],
+    dialect: Dialect,
     hint: Option<Type>,
     join: Join,
 ) -> Option<Elementary> {
@@ -745,7 +738,7 @@ fn literal_meets(
             if ty.is_real() || ty.repr().integer(*value).is_some() {
                 return Some(ty);
             }
-            let own = wider.into_iter().find(|it| it.repr().integer(*value).is_some())?;
+            let own = literal_types(*value, ty, dialect).into_iter().find(|it| it.repr().integer(*value).is_some())?;
             join(number, own)
         }
         Operand::Real { .. } => {

@@ -7,7 +7,7 @@ use super::checker::Checker;
 use super::operand::Operand;
 use super::operator::{beside, literal_types};
 use crate::dialect::Dialect;
-use crate::types::coercion::{Join, as_number, join, join_in};
+use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Block, Conversion, Elementary, Expr, Section, Type};
 use staunch_runtime::{Class, Kind, Signature};
@@ -325,7 +325,11 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Type {
         let Type::Elementary(it) = own else { return own };
-        if class == Class::Bit || !self.promotes_in_functions(it, span) {
+        let is_promoted = operands.clone().any(|it| matches!(it, Operand::Promoted(..)));
+        let keeps = is_promoted
+            && (is_narrow(it) || it == Elementary::Real)
+            && self.decl.dialect(span).rules().keeps_one_type();
+        if class == Class::Bit || !(keeps || self.promotes_in_functions(it, span)) {
             return own;
         }
         // What is narrow has its value at a DINT, whatever its sign.
@@ -530,7 +534,7 @@ fn widened_by_literals<'o>(
             && ty.is_integer()
             && ty.repr().integer(*value).is_none()
         {
-            let own = literal_types(ty, dialect).into_iter().find(|it| it.repr().integer(*value).is_some());
+            let own = literal_types(*value, ty, dialect).into_iter().find(|it| it.repr().integer(*value).is_some());
             ty = own.and_then(|own| join(ty, own)).unwrap_or(ty);
         }
     }

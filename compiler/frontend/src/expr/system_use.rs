@@ -7,7 +7,7 @@ use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Use};
 use staunch_runtime::Class;
 
 impl Checker<'_, '_> {
-    pub(super) fn note_use(&mut self, found: Use, span: Span) {
+    pub(crate) fn note_use(&mut self, found: Use, span: Span) {
         let at = self.at(span);
         self.decl.program.uses.note(found, at);
     }

@@ -25,7 +25,7 @@ pub fn find(program: &Program, dialect: Dialect) -> Vec<String> {
 fn used(program: &Program, wanted: Use) -> Option<u32> {
     let is_it = |it: &&Field| match (wanted, it.ty.elementary()) {
         (Use::Type(ty), Some(own)) => it.section == Section::Input && own == ty,
-        (Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..), _) => false,
+        (Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..) | Use::Part(_), _) => false,
     };
     let programs = program.instances.iter().map(|it| program.class(it.program).state).chain([program.globals]);
     let inputs = programs.flat_map(|it| &program.structure(it).fields).filter(is_it).map(|it| it.location.line);

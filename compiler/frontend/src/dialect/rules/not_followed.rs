@@ -82,10 +82,55 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     ),
     of_strucpp(
         Use::Conversion(Class::Elementary, Class::Date),
-        "a TOD may be negative, or longer than a day: INT_TO_TOD(-1)",
+        "a TOD may be negative, or longer than a day: INT_TO_TOD(-1); DT_TO_DATE and DT_TO_TOD leave the nanoseconds of the DT",
     ),
+    of_strucpp(Use::Function("LEN"), NO_SIGN),
+    of_strucpp(Use::Function("FIND"), NO_SIGN),
+    of_strucpp(
+        Use::Operator("-", Class::Date),
+        "a DATE is a number of days, and the difference of two is that number in nanoseconds",
+    ),
+    of_strucpp(
+        Use::Part(EN),
+        "a statement with a call whose EN is FALSE is left out, so that its variable keeps its value; within an expression EN is \
+         passed over, and a block's own input of that name is never set",
+    ),
+    of_strucpp(Use::Part(TEMP), "it keeps its value from call to call"),
+    of_strucpp(Use::Part(LIMIT), ENDLESS),
+    of_matiec(Use::Part(LIMIT), ENDLESS),
+    NotFollowed {
+        dialect: Dialect::Codesys,
+        what: ENDLESS,
+        evidence: "CODESYS help, \"FOR\", \"C0266\"",
+        uses: Use::Part(LIMIT),
+    },
+    NotFollowed {
+        dialect: Dialect::Siemens,
+        what: "a timer keeps the PT that it started with",
+        evidence: "S7-1200 manual, 11/2011, table 7-19",
+        uses: Use::Part(PRESET),
+    },
+    NotFollowed {
+        dialect: Dialect::Codesys,
+        what: "the parts have no zeros before them: `D#1970-1-1`",
+        evidence: "CODESYS help, \"Conversion: DATE, DT, TOD\"",
+        uses: Use::Conversion(Class::Date, Class::String),
+    },
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
+
+/// A call with an input EN, in the notes of a program.
+pub const EN: &str = "EN";
+/// A VAR_TEMP of a block or a PROGRAM.
+pub const TEMP: &str = "VAR_TEMP";
+/// A FOR that leaves its counter no value beyond its limit.
+pub const LIMIT: &str = "FOR to the limit of its counter's type";
+/// A timer whose PT is not constant.
+pub const PRESET: &str = "a PT that moves";
+
+const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
+
+const ENDLESS: &str = "the counter wraps, and the loop does not end";
 
 const PARTS: &str = "seconds and nanoseconds are kept apart: `T#500ms + T#500ms = T#1s` is FALSE, and a literal may lack a \
                      nanosecond: `T#1ms` is 999999 ns on x86-64";
@@ -149,6 +194,18 @@ pub const EDGES: &[Edge] = &[
         "`MID`, `INSERT`, `DELETE`, `REPLACE` with a position or count out of range",
         "acts as the nearest one",
         "CODESYS, library Standard: nothing",
+    ),
+    edge(
+        Dialect::Codesys,
+        "a number with a fraction beside a REAL",
+        "a REAL",
+        "CODESYS help and Beckhoff, \"Typed Literals\": always LREAL, so that `r = 0.1` is FALSE; SA0024: typed by its use",
+    ),
+    edge(
+        Dialect::Logix,
+        "an integer operation in an expression that has a REAL elsewhere: `d / 2 + 0.5`",
+        "of integers",
+        "1756-RM003N, p. 649: with a REAL among the operands, those of an instruction convert to REAL; of expressions of ST no page says it",
     ),
     edge(
         Dialect::Logix,
