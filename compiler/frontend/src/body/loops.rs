@@ -1,7 +1,7 @@
 //! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
 use crate::diagnostic::wording::article;
-use crate::dialect::rules::{LIMIT, NOT_FOLLOWED, Use};
+use crate::dialect::rules::{LIMIT, Use, is_followed};
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::types::counter::{Counter, Shown};
@@ -212,7 +212,7 @@ impl<'s> Checker<'_, 's> {
     fn note_endless(&mut self, to: &ast::Expr<'s>, ty: Elementary) {
         let dialect = self.decl.dialect(to.span);
         self.note_use(Use::Part(LIMIT), to.span);
-        if NOT_FOLLOWED.iter().any(|it| it.dialect == dialect && it.uses == Use::Part(LIMIT)) {
+        if !is_followed(dialect, LIMIT) {
             let system = dialect.name().to_ascii_uppercase();
             let message =
                 format!("on {system} this loop does not end: {} has no value beyond its limit", article(ty.name()));

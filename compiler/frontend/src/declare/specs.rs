@@ -126,10 +126,6 @@ impl<'s> Declarations<'s> {
     ) -> Option<Resolved> {
         let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
         self.check_construction(decl, resolved.ty);
-        if matches!(decl.ty.kind, TypeKind::Subrange { .. }) && !matches!(resolved.ty, Type::Subrange(..)) {
-            // MATIEC starts a variable of a named subrange at its lower limit, another one at 0.
-            resolved.initial = Const::Zero;
-        }
         if let Some(initial) = &decl.initial {
             // A refused value has been reported; the type is known all the same.
             let is_flat = self.has_flat_rows(&decl.ty, initial);
@@ -450,8 +446,7 @@ impl<'s> Declarations<'s> {
         }
         let ty = Type::Subrange(made_of, self.intern_bounds(bounds));
         let initial = self.least(ty);
-        let is_checked = self.dialect(base.span).rules().checks_subranges();
-        Some(Resolved { ty: if is_checked { ty } else { Type::Elementary(made_of) }, initial })
+        Some(Resolved { ty, initial })
     }
 
     /// The limits of a subrange, each pair once.

@@ -12,11 +12,10 @@ use choice::Choice;
 pub use choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
     LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber,
-    ToBool,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
 };
 pub use followed::{Followed, Rules};
-pub use not_followed::{EDGES, EN, Edge, LIMIT, NOT_FOLLOWED, NotFollowed, PRESET, TEMP};
+pub use not_followed::{EDGES, EN, Edge, LIMIT, NOT_FOLLOWED, NotFollowed, PRESET, SUBRANGE, TEMP, is_followed};
 pub use staunch_ir::Use;
 use systems::{CODESYS, CSCAPE, IEC, LOGIX, OPENPLC, OPENPLC4, SIEMENS};
 
@@ -69,7 +68,6 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.second_bool),
         row(|it| &it.case_selector),
         row(|it| &it.loop_limit),
-        row(|it| &it.subranges),
         row(|it| &it.parts_of_milliseconds),
     ]
 }

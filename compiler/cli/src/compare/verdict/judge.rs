@@ -85,7 +85,11 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
                 let advice = it.advice(args.from.dialect, args.to.dialect, form);
                 format!(". Trap {}{of}: {} What to do: {}", it.number(), it.sentence(), advice.trim_end_matches('.'))
             });
-            let words = format!("the two differ after {scans}, in {}{trap}", names.join(", "));
+            let place = match names.is_empty() {
+                true => "where one faults and the other goes on".to_owned(),
+                false => format!("in {}", names.join(", ")),
+            };
+            let words = format!("the two differ after {scans}, {place}{trap}");
             WithoutRun { verdict: "different", words, scans: Some(rows.len()), pitfall: cause.pitfall }
         }
         None if outcome.complete && covers_all(pair, world, args) => WithoutRun {

@@ -457,24 +457,6 @@ impl Choice for CaseSelector {
     }
 }
 
-/// Whether a variable of a subrange holds nothing else.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Subranges {
-    Checked,
-    AsTheirBase,
-}
-
-impl Choice for Subranges {
-    const RULE: &'static str = "a value outside of a subrange";
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::Checked => "a fault",
-            Self::AsTheirBase => "stored: the type is its base",
-        }
-    }
-}
-
 /// What becomes of parts of a millisecond that TIMEs are computed to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PartsOfMilliseconds {

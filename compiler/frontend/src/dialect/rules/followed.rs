@@ -3,8 +3,7 @@
 use super::choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
     LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber,
-    ToBool,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
 };
 
 /// How one dialect computes.
@@ -35,7 +34,6 @@ pub struct Rules {
     pub second_bool: Followed<SecondBool>,
     pub case_selector: Followed<CaseSelector>,
     pub loop_limit: Followed<LoopLimit>,
-    pub subranges: Followed<Subranges>,
     pub parts_of_milliseconds: Followed<PartsOfMilliseconds>,
 }
 
@@ -134,10 +132,6 @@ impl Rules {
     /// The value that CASE selects by is cut to the type that it counts as.
     pub const fn cuts_selectors(&self) -> bool {
         matches!(self.case_selector.choice, CaseSelector::Cut)
-    }
-
-    pub const fn checks_subranges(&self) -> bool {
-        matches!(self.subranges.choice, Subranges::Checked)
     }
 
     /// What is computed of TIMEs has whole milliseconds.

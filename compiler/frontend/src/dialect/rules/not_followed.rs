@@ -16,6 +16,11 @@ pub struct NotFollowed {
     pub uses: Use,
 }
 
+/// Whether a dialect does as its system with this part of the language.
+pub fn is_followed(dialect: Dialect, part: &'static str) -> bool {
+    NOT_FOLLOWED.iter().all(|it| it.dialect != dialect || it.uses != Use::Part(part))
+}
+
 /// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
 pub const NOT_FOLLOWED: &[NotFollowed] = &[
     not_followed(
@@ -96,6 +101,8 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
          passed over, and a block's own input of that name is never set",
     ),
     of_strucpp(Use::Part(TEMP), "it keeps its value from call to call"),
+    of_matiec(Use::Part(SUBRANGE), UNCHECKED),
+    of_strucpp(Use::Part(SUBRANGE), UNCHECKED),
     of_strucpp(Use::Part(LIMIT), ENDLESS),
     of_matiec(Use::Part(LIMIT), ENDLESS),
     NotFollowed {
@@ -127,6 +134,11 @@ pub const TEMP: &str = "VAR_TEMP";
 pub const LIMIT: &str = "FOR to the limit of its counter's type";
 /// A timer whose PT is not constant.
 pub const PRESET: &str = "a PT that moves";
+
+/// An assignment to a variable of a subrange that faults: no note of a program, since most have none.
+pub const SUBRANGE: &str = "a value outside of a subrange";
+
+const UNCHECKED: &str = "it is stored, and the program continues; here it is a fault";
 
 const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
 

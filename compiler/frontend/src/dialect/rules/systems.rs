@@ -3,8 +3,7 @@
 use super::choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
     LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber,
-    ToBool,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
 };
 use super::followed::{Followed, Rules};
 
@@ -34,7 +33,6 @@ pub(super) const IEC: Rules = Rules {
     second_bool: follows(SecondBool::Always, "IEC 61131-3, 7.3.2: the implementer may say otherwise"),
     case_selector: follows(CaseSelector::AsComputed, "IEC 61131-3, table 72"),
     loop_limit: follows(LoopLimit::Once, "IEC 61131-3, 7.3.3.4.2: the body changes none of them"),
-    subranges: follows(Subranges::Checked, "IEC 61131-3, 6.4.4.4.1: an error"),
     parts_of_milliseconds: follows(PartsOfMilliseconds::Kept, "IEC 61131-3, 6.3.3.2: left to the implementer"),
 };
 
@@ -69,7 +67,6 @@ pub(super) const CSCAPE: Rules = Rules {
     second_bool: undocumented(IEC.second_bool),
     case_selector: undocumented(IEC.case_selector),
     loop_limit: undocumented(IEC.loop_limit),
-    subranges: undocumented(IEC.subranges),
     parts_of_milliseconds: undocumented(IEC.parts_of_milliseconds),
 };
 
@@ -116,7 +113,6 @@ pub(super) const OPENPLC: Rules = Rules {
     second_bool: follows(SecondBool::IfItDecides, MATIEC),
     case_selector: follows(CaseSelector::Cut, MATIEC),
     loop_limit: follows(LoopLimit::EachTurn, MATIEC),
-    subranges: follows(Subranges::AsTheirBase, MATIEC),
     ..IEC
 };
 
@@ -145,7 +141,6 @@ pub(super) const OPENPLC4: Rules = Rules {
     functions: follows(Functions::OfStrucpp, "STruC++ 0.6.1, run: INSERT('ABC', 'X', 1) is 'XABC'"),
     literals: follows(Literals::OfC, "STruC++ 0.6.1, run: `REAL#0.1 - 0.30000001` is -0.200000003"),
     second_bool: follows(SecondBool::Always, "STruC++ 0.6.1: C++'s `&` and `|`"),
-    subranges: follows(Subranges::AsTheirBase, "STruC++ 0.6.1: a `using` of the base type"),
     loop_limit: follows(LoopLimit::EachTurnUpward, "STruC++ 0.6.1, run: `FOR i := 5 TO 1 BY STEP` does not run"),
     ..IEC
 };
