@@ -87,7 +87,8 @@ fn scratch() -> PathBuf {
 fn decided(name: &str, setting: &str) -> String {
     let folder = scratch().join(name);
     std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    std::fs::write(folder.join("staunch.toml"), format!("ctu-stop-at-pv = false\n{setting}\n"))
+    let level = if setting.contains("s7-ld") { "" } else { "s7-ld = \"level\"\n" };
+    std::fs::write(folder.join("staunch.toml"), format!("ctu-stop-at-pv = false\n{level}{setting}\n"))
         .expect("a project file");
     format!("{name}/")
 }
@@ -98,9 +99,19 @@ fn program(name: &str, declared: &str, body: &str) -> PathBuf {
     path
 }
 
+/// Inputs within their subranges: OPENPLC takes other values too.
+fn within(source: &str) -> Vec<String> {
+    let inputs = source.split("END_VAR").filter_map(|it| it.split_once("VAR_INPUT")).flat_map(|it| it.1.split(';'));
+    let range = |it: &str| {
+        let (name, ty) = it.split_once(" : INT(")?;
+        Some(format!("{} {}", name.trim(), ty.split_once(')')?.0))
+    };
+    inputs.filter_map(range).collect()
+}
+
 fn assumed(line: &str) -> PathBuf {
     static WRITTEN: std::sync::Mutex<()> = std::sync::Mutex::new(());
-    let path = scratch().join(format!("{}.txt", line.replace(' ', "_")));
+    let path = scratch().join(format!("{}.txt", line.replace([' ', '\n'], "_")));
     // Others may read it meanwhile.
     let _only = WRITTEN.lock();
     if std::fs::read_to_string(&path).ok().as_deref() != Some(line) {
@@ -112,9 +123,14 @@ fn assumed(line: &str) -> PathBuf {
 fn compare(from: &str, to: &str, vars: &str, original: &PathBuf, other: &PathBuf) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
     command.arg("compare").arg(original).args(["--from", from, "--to", to, "--vars", vars, "-A", "warnings"]);
+    let source = std::fs::read_to_string(original).expect("the program");
+    let mut lines = within(&source);
     if from != to && [from, to].contains(&"codesys") && vars != "kept" {
         // What CODESYS keeps over STOP -> RUN is trap 11, which has a test of its own.
-        command.arg("--assume").arg(assumed("no run"));
+        lines.push("no run".to_owned());
+    }
+    if !lines.is_empty() {
+        command.arg("--assume").arg(assumed(&lines.join("\n")));
     }
     command.arg("--against").arg(other).env("NO_COLOR", "1").output().expect("the command starts")
 }

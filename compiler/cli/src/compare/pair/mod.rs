@@ -402,14 +402,29 @@ impl Pair {
         self.is_other(at, "PT")
     }
 
-    /// Whether a block is given the same PT on both sides, if it has one: else it differs by that.
-    pub fn has_one_preset(&self, at: usize, states: [&[u8]; 2]) -> bool {
-        let preset = |side: usize| {
-            let scalars = &self.sides[side].scalars;
-            let path = format!("{}.PT", scalars.blocks[self.blocks[at][side]].path);
-            scalars.all.iter().position(|it| it.path == path)
-        };
-        preset(0).zip(preset(1)).is_none_or(|(a, b)| self.equal([a, b], states))
+    /// Whether a block is given the same on both sides; else it differs by that.
+    pub fn is_given_alike(&self, at: usize, states: [&[u8]; 2]) -> bool {
+        let pins = |side: usize| self.sides[side].scalars.blocks[self.blocks[at][side]].block.info().inputs();
+        let shared = pins(0).filter(|it| pins(1).any(|other| other.name == it.name));
+        let mut both = shared.filter_map(|it| Some([self.pin(at, 0, it.name)?, self.pin(at, 1, it.name)?]));
+        both.all(|it| self.equal(it, states))
+    }
+
+    /// Whether the time of a timer is over as it begins.
+    pub fn is_over_at_once(&self, at: usize, states: [&[u8]; 2]) -> bool {
+        (0..2).all(|side| {
+            let preset = self.pin(at, side, "PT").map(|it| &self.sides[side].scalars.all[it]);
+            let program = &self.sides[side].program;
+            let value = preset.and_then(|it| scalar::number(program, it, states[side]));
+            value.is_none_or(|it| it <= 0)
+        })
+    }
+
+    /// The scalar of a block's pin.
+    fn pin(&self, at: usize, side: usize, pin: &str) -> Option<usize> {
+        let scalars = &self.sides[side].scalars;
+        let path = format!("{}.{pin}", scalars.blocks[self.blocks[at][side]].path);
+        scalars.all.iter().position(|it| it.path == path)
     }
 
     fn is_other(&self, at: usize, pin: &str) -> bool {

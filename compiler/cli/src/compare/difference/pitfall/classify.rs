@@ -122,7 +122,6 @@ impl Case {
         goes_below(self.kinds[0]) != goes_below(self.kinds[1])
             && a.count.min(b.count) < 0
             && a.count.max(b.count) == 0
-            && self.down()
     }
 
     /// CD rises on one side alone, where the other has held it since the call before: a guard has made the edge.
