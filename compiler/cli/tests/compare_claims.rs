@@ -617,6 +617,77 @@ END_PROGRAM
     let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
     let output = command.args(["compare", &path, "--from", "codesys", "--to", "siemens"]).output().expect("it starts");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(said.contains("`RESET` is called `R` in S7") && said.contains("`SET1` is called `S1` in SIEMENS"), "{said}");
+    assert!(
+        said.contains("`RESET` is called `R` in S7") && said.contains("`SET1` is called `S1` in SIEMENS"),
+        "{said}"
+    );
     assert!(!said.contains(" in IEC"), "{said}");
+}
+
+/// Of two counters that part, the one is blamed without whose rule nothing would differ: here the second comes to differ
+/// first, and what is asked of it does not depend on that.
+#[test]
+fn the_counter_that_is_blamed_makes_the_difference_alone() {
+    let second = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTU; d : CTD; END_VAR
+c(s, FALSE, 3);
+d(s, c.CV = 4, 2);
+o := d.Q;
+END_PROGRAM
+";
+    let element = "PROGRAM p
+VAR_INPUT x, y : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; i : INT; a : ARRAY[0..1] OF CTD; END_VAR
+IF NOT y THEN c(x, x, 1); END_IF;
+IF y THEN i := 1; ELSE i := 0; END_IF;
+a[i](y OR x, c.Q, 1);
+o := a[1].Q;
+END_PROGRAM
+";
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    for (number, source, from, to, said) in [
+        (0, second, "iec", "openplc", "Trap 15 (`c`)"),
+        (1, second, "codesys", "siemens", "Trap 2 (`c`)"),
+        (2, element, "siemens", "openplc4", "Trap 17 (`c`)"),
+    ] {
+        let arguments = ["--from", from, "--to", to, "--vars", "o", "--assume", &none];
+        let (code, text) = compare(&format!("alone_{number}"), source, &arguments);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(said), "{text}");
+    }
+}
+
+/// DN of a CTD that is put in place of a block is asked for by nothing, and is no reason.
+#[test]
+fn what_the_port_does_not_read_is_no_reason() {
+    let below = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; m, b : BOOL; END_VAR
+b := s AND NOT m; m := s;
+c(b, l, 3);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let two = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR d : CTD; c : CTU; END_VAR
+d(FALSE, FALSE, 2);
+c(s, r, 2);
+o := d.Q AND c.Q;
+END_PROGRAM
+";
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    for (name, source, from, said) in
+        [("below", below, "openplc", "Trap 15 (`c`)"), ("two", two, "iec", "Trap 5 (`c`)")]
+    {
+        let arguments = ["--from", from, "--to", "logix", "--vars", "o", "--assume", &none, "--budget", "100000"];
+        let (code, text) = compare(&format!("unread_{name}"), source, &arguments);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(said) && !text.contains("Trap 4"), "{text}");
+    }
 }

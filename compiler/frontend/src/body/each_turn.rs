@@ -10,9 +10,8 @@ impl<'s> Checker<'_, 's> {
     /// Whether the loop runs otherwise here than one that looks at its limit and step once.
     pub(super) fn looks_in_each_turn(&self, head: &For, by: Option<&ast::Expr<'s>>, span: Span) -> bool {
         let rule = self.decl.dialect(span).rules().loop_limit.choice;
-        let changes = |it: &Expr| {
-            alias::changes(&self.frame(), &head.body, it) || alias::reads(&self.frame(), it, &head.counter)
-        };
+        let changes =
+            |it: &Expr| alias::changes(&self.frame(), &head.body, it) || alias::reads(&self.frame(), it, &head.counter);
         let step_changes = match &head.step {
             Step::Constant(_) => false,
             Step::Variable(step) => changes(step),

@@ -215,12 +215,8 @@ impl<'s> Checker<'_, 's> {
         }
         let found = match self.callee(callee, arguments) {
             Some(Callee::Function(slot)) if self.has_untyped_scale(slot, callee, arguments) => None,
-            Some(Callee::Function(slot)) => {
-                self.meant(slot, callee.span, arguments, expected).map(Callee::Function)
-            },
-            Some(Callee::Routine(slot)) => {
-                self.meant_routine(slot, callee, arguments, expected).map(Callee::Routine)
-            },
+            Some(Callee::Function(slot)) => self.meant(slot, callee.span, arguments, expected).map(Callee::Function),
+            Some(Callee::Routine(slot)) => self.meant_routine(slot, callee, arguments, expected).map(Callee::Routine),
             other => other,
         };
         if found.is_none() {

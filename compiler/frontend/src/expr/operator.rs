@@ -653,13 +653,7 @@ fn is_real(operand: &Operand) -> bool {
     }
 }
 
-fn common(
-    sides: &Sides,
-    types: [Option<Type>; 2],
-    mixes: bool,
-    dialect: Dialect,
-    join: Join,
-) -> Option<Elementary> {
+fn common(sides: &Sides, types: [Option<Type>; 2], mixes: bool, dialect: Dialect, join: Join) -> Option<Elementary> {
     let number = |ty: Elementary| if mixes { as_number(ty) } else { ty };
     let literal = |ty: Elementary, it: &Operand| {
         let own = literal_types(ty, dialect);

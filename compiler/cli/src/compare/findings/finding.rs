@@ -1,10 +1,10 @@
 //! For each counter and pitfall: reachable, with inputs that show it; impossible, and why; or undecided.
 
+use super::enable;
 use crate::compare::difference::accept::{Accepted, Line};
 use crate::compare::difference::beyond;
 use crate::compare::difference::kind::Kind;
 use crate::compare::difference::pitfall::{self, Cause, Pitfall, Use};
-use super::enable;
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::scalar::Role;
 use crate::compare::search::progress::Outcome;

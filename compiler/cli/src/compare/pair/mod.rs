@@ -7,6 +7,7 @@ mod settled;
 mod side;
 
 mod comparison;
+mod exchange;
 mod matching;
 pub mod passing;
 
@@ -125,10 +126,14 @@ impl Pair {
     /// The variables that are compared: all that both sides have, or those that are named.
     pub fn compare_only(&mut self, only: &[String]) {
         self.compared = matching::compared(&self.sides, &self.inputs, only);
-        if self.is_ported && only.is_empty() {
+        if self.is_ported {
             let has_counterpart = |it: &Matched| !matching::is_done_of_down(&self.sides, *it);
-            self.compared.retain(has_counterpart);
-            self.outputs.iter_mut().for_each(|it| it.retain(has_counterpart));
+            let is_named = |it: &Matched, compared: &[Matched]| !only.is_empty() && compared.contains(it);
+            let named = self.compared.clone();
+            self.compared.retain(|it| has_counterpart(it) || is_named(it, &named));
+            for outputs in &mut self.outputs {
+                outputs.retain(|it| has_counterpart(it) || is_named(it, &named));
+            }
             self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         }
         self.compared_bytes = Comparison::of(&self.sides, &self.compared);

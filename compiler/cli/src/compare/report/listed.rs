@@ -56,7 +56,8 @@ impl Report<'_> {
                 let _ = writeln!(text, "  {}{}", self.reached(finding, trace.as_ref()), note(finding, accepted));
             }
         }
-        let undecided: Vec<&&Finding> = own.iter().filter(|it| matches!(it.verdict, finding::Verdict::Undecided)).collect();
+        let undecided: Vec<&&Finding> =
+            own.iter().filter(|it| matches!(it.verdict, finding::Verdict::Undecided)).collect();
         let traps: Vec<String> =
             undecided.iter().filter_map(|it| Some(format!("{}{}", it.pitfall?.number(), note(it, accepted)))).collect();
         if !traps.is_empty() {

@@ -105,7 +105,9 @@ impl Report<'_> {
         accepted: &Accepted,
     ) -> String {
         let (verdict, why) = match &finding.verdict {
-            finding::Verdict::Reachable(_) if finding.pitfall.is_none() => ("reachable", quoted(finding.reason(self.is_one_program()))),
+            finding::Verdict::Reachable(_) if finding.pitfall.is_none() => {
+                ("reachable", quoted(finding.reason(self.is_one_program())))
+            }
             finding::Verdict::Reachable(_) => ("reachable", "null".to_owned()),
             finding::Verdict::Impossible(why) => ("impossible", quoted(why)),
             finding::Verdict::Undecided => ("undecided", "null".to_owned()),

@@ -100,7 +100,12 @@ impl Report<'_> {
                 let place = it.at.map_or_else(String::new, |at| format!(", {}", self.place(at)));
                 let path = pair.path(of);
                 let follows = if path == it.subject { String::new() } else { format!("`{path}` follows from ") };
-                format!("{follows}`{}` ({}{place}): {}.\n", it.subject, it.kind.name(), it.reason(self.is_one_program()))
+                format!(
+                    "{follows}`{}` ({}{place}): {}.\n",
+                    it.subject,
+                    it.kind.name(),
+                    it.reason(self.is_one_program())
+                )
             }
             None => self.fault_of_one(pair, rows).unwrap_or_else(|| {
                 let own = |it: &Matched| findings.all.iter().find(|finding| finding.subject == pair.path(*it));
@@ -148,7 +153,11 @@ impl Report<'_> {
             return None;
         }
         let (place, kind) = (self.place(fault.at), fault.kind);
-        Some(format!("None of the traps explains it: a {kind} ({place}) is a fault on {}, and {} goes on.\n", names[side], names[1 - side]))
+        Some(format!(
+            "None of the traps explains it: a {kind} ({place}) is a fault on {}, and {} goes on.\n",
+            names[side],
+            names[1 - side]
+        ))
     }
 
     fn faults(&self, rows: &[Row]) -> String {

@@ -508,7 +508,9 @@ impl Choice for LoopLimit {
         match self {
             Self::Once => "evaluated once",
             Self::EachTurn => "read in each turn",
-            Self::EachTurnUpward => "read in each turn; it counts down only by a negative number, not by a variable or CONSTANT",
+            Self::EachTurnUpward => {
+                "read in each turn; it counts down only by a negative number, not by a variable or CONSTANT"
+            }
         }
     }
 }

@@ -1,9 +1,10 @@
 //! The rules of each system, with the page or program that shows them.
 
 use super::choice::{
-    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals, LoopLimit,
-    MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText, RealToInteger,
-    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
+    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, Subranges, TextPositions, TimeAsNumber,
+    ToBool,
 };
 use super::followed::{Followed, Rules};
 
@@ -86,7 +87,10 @@ pub(super) const CODESYS: Rules = Rules {
     time_as_number: follows(TimeAsNumber::WholeMilliseconds, "CODESYS help, \"REAL / LREAL conversion\""),
     limit_crossed: follows(LimitCrossed::Maximum, "CODESYS help and Beckhoff, \"LIMIT\": MIN(MAX(IN, Min), Max)"),
     rotated_constant: follows(RotatedConstant::FewestBits, "CODESYS help, \"ROL\", \"ROR\"; Beckhoff, \"ROL\""),
-    literals: follows(Literals::Smallest, "CODESYS help and Beckhoff, \"Typed Literals\": the smallest possible data type"),
+    literals: follows(
+        Literals::Smallest,
+        "CODESYS help and Beckhoff, \"Typed Literals\": the smallest possible data type",
+    ),
     parts_of_milliseconds: follows(PartsOfMilliseconds::Cut, "CODESYS help, \"TIME, LTIME\": a number of milliseconds"),
     ..IEC
 };

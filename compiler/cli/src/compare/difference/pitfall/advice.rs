@@ -35,12 +35,7 @@ impl Pitfall {
     }
 }
 
-fn said(
-    pitfall: usize,
-    from: Dialect,
-    to: Dialect,
-    counting: Counting,
-) -> impl Iterator<Item = &'static Advice> {
+fn said(pitfall: usize, from: Dialect, to: Dialect, counting: Counting) -> impl Iterator<Item = &'static Advice> {
     let found = all().filter(move |it| it.pitfalls.contains(&pitfall) && it.is_for(counting));
     found.filter(move |it| it.from.contains(&from) && it.to.contains(&to))
 }

@@ -153,12 +153,17 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
 struct Relevant {
     dependencies: Dependencies,
     differences: HashSet<Declared>,
+    found: Vec<Matched>,
 }
 
 impl Relevant {
     fn of(pair: &Pair, differences: &[Matched]) -> Self {
         let declared = differences.iter().filter_map(|it| pair.declared(0, *it)).collect();
-        Self { dependencies: Dependencies::of(&pair.sides[0].program), differences: declared }
+        Self {
+            dependencies: Dependencies::of(&pair.sides[0].program),
+            differences: declared,
+            found: differences.to_vec(),
+        }
     }
 
     /// Whether a variable decides them, without going through others. A fault may follow from anything.
@@ -190,6 +195,9 @@ fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     let declared = |counter: usize| pair.instances(counter)[0].field;
     let all = (0..habits.len()).filter(|it| relevant.has(declared(*it), &HashSet::new()));
     let found: Vec<Parting> = all.filter_map(|it| parting(pair, rows, it, habits[it])).collect();
+    if let Some(found) = exchanged(pair, rows, relevant, &found) {
+        return Some(found);
+    }
     let roots: Vec<Parting> = found.iter().copied().filter(|it| it.is_root).collect();
     let is_near = |it: &&Parting| {
         let others = roots.iter().map(|it| it.counter).filter(|other| *other != it.counter);
@@ -200,6 +208,15 @@ fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     };
     let first = |found: &mut dyn Iterator<Item = &Parting>| found.min_by_key(|it| it.row).copied();
     first(&mut roots.iter().filter(is_near)).or_else(|| first(&mut roots.iter())).or_else(|| first(&mut found.iter()))
+}
+
+/// Of several counters that part, the first with which nothing of what is looked at differs any more where it alone is
+/// computed as on the other system.
+fn exchanged(pair: &Pair, rows: &[Row], relevant: &Relevant, found: &[Parting]) -> Option<Parting> {
+    let mut sorted = found.to_vec();
+    sorted.sort_by_key(|it| it.row);
+    let several = sorted.len() > 1 && !relevant.found.is_empty();
+    sorted.into_iter().filter(|_| several).find(|it| pair.agrees_with(it.counter, rows, &relevant.found))
 }
 
 /// The first row in which a counter parts by a pitfall.
