@@ -87,7 +87,8 @@ fn scratch() -> PathBuf {
 fn decided(name: &str, setting: &str) -> String {
     let folder = scratch().join(name);
     std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    std::fs::write(folder.join("staunch.toml"), format!("ctu-stop-at-pv = false\n{setting}\n"))
+    let level = if setting.contains("s7-ld") { "" } else { "s7-ld = \"level\"\n" };
+    std::fs::write(folder.join("staunch.toml"), format!("ctu-stop-at-pv = false\n{level}{setting}\n"))
         .expect("a project file");
     format!("{name}/")
 }

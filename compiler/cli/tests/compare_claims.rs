@@ -442,3 +442,275 @@ END_PROGRAM
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("Trap 19 (`t`): TON, TOF and TP on OPENPLC, before and from v4.1,"), "{text}");
 }
+
+/// Reset wins over the load on IEC, OPENPLC, CODESYS and S7; the port loads after CTUD, which has reset before it. What it
+/// resets and loads it may read the counter itself, as it was before the call.
+#[test]
+fn the_port_of_a_ctud_lets_reset_win_over_load() {
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let arguments = ["--to", "logix", "--vars", "o", "--assume", &none, "--from"];
+    std::fs::create_dir_all(folder().join("level")).expect("a folder");
+    std::fs::write(folder().join("level/staunch.toml"), "s7-ld = \"level\"\n").expect("a project file");
+    for from in ["iec", "openplc", "siemens", "codesys"] {
+        for (name, load) in [("plain", "l"), ("both", "l OR r"), ("own", "c.CV = 0 AND l")] {
+            let source = format!(
+                "PROGRAM p
+VAR_INPUT r, l : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTUD; END_VAR
+c(FALSE, FALSE, r, {load}, 3);
+o := c.CV > 0;
+END_PROGRAM
+"
+            );
+            let (code, text) = compare(&format!("level/{name}_{from}"), &source, &[&arguments[..], &[from]].concat());
+            assert_eq!(code, Some(0), "{from}: {text}");
+        }
+    }
+}
+
+/// A load on Logix comes after CTUD, which evaluates DN: QU is asked of the count.
+#[test]
+fn the_port_of_a_loaded_ctud_asks_for_the_count() {
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let loaded = "PROGRAM p
+VAR_INPUT l : BOOL; END_VAR
+VAR_OUTPUT o, q : BOOL; END_VAR
+VAR c : CTUD; END_VAR
+c(FALSE, FALSE, FALSE, l, 3, QU => q);
+o := c.QU;
+END_PROGRAM
+";
+    let arguments = ["--from", "iec", "--to", "logix", "--vars", "o,q", "--assume", &none];
+    let (code, text) = compare("loaded", loaded, &arguments);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("o := (c.ACC >= c.PRE);") && text.contains("q := c.ACC >= c.PRE;"), "{text}");
+    let (_, text) = compare("not_loaded", &loaded.replace(", l, 3", ", FALSE, 3"), &arguments);
+    assert!(text.contains("o := c.DN;"), "{text}");
+}
+
+/// An Editor of OpenPLC that counts CD as it rises is not given CD negated.
+#[test]
+fn advice_is_for_the_edge_that_is_counted() {
+    std::fs::create_dir_all(folder().join("rising")).expect("a folder");
+    std::fs::write(folder().join("rising/staunch.toml"), "openplc4-cd-edge = \"rising\"\n").expect("a project file");
+    let source = "PROGRAM p
+VAR_INPUT up, down : BOOL; END_VAR
+VAR_OUTPUT full : BOOL; END_VAR
+VAR c : CTUD; END_VAR
+c(CU := up, CD := down, R := FALSE, LD := FALSE, PV := 2); full := c.QU;
+END_PROGRAM
+";
+    let (code, text) = compare("rising/p", source, &["--from", "openplc", "--to", "openplc4", "--vars", "full"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Trap 18 (`c`)") && text.contains("CD := d.Q AND NOT u.Q, …)"), "{text}");
+    let (_, text) = compare("falls", source, &["--from", "openplc", "--to", "openplc4"]);
+    assert!(text.contains("CD := NOT (d.Q AND NOT u.Q), …)"), "{text}");
+}
+
+/// RESET and LOAD on CODESYS and CSCAPE, R and LD elsewhere; a CTD counts by CD.
+#[test]
+fn advice_has_the_pins_of_the_block() {
+    let logix = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c : COUNTER; END_VAR
+CTU(c, s); RES(c, r);
+END_PROGRAM
+";
+    for (to, reset, load) in [("codesys", "RESET", "LOAD"), ("cscape", "RESET", "LOAD"), ("iec", "R", "LD")] {
+        let (_, text) = compare(&format!("pins_{to}"), logix, &["--from", "logix", "--to", to]);
+        assert!(text.contains(&format!("c(CU := rung, {reset} := clear, ")), "{to}: {text}");
+        assert!(text.contains(&format!("c(CD := rung, {load} := load, ")), "{to}: {text}");
+    }
+    let down = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR c : CTD; END_VAR
+c(s, l, 3);
+END_PROGRAM
+";
+    for from in ["codesys", "openplc"] {
+        let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+        let (_, text) = compare(&format!("cd_{from}"), down, &["--from", from, "--to", "cscape", "--assume", &none]);
+        let advice = text.lines().find(|it| it.starts_with("What to do: ")).unwrap_or_default();
+        assert!(advice.contains("c(CD := e.Q, …)") && !advice.contains("CU :="), "{from}: {text}");
+    }
+}
+
+/// What is one program on both systems is never said to be two: a counter below 0 in one of its calls, a division by zero,
+/// an EN that stops a body.
+#[test]
+fn one_program_is_not_two() {
+    let calls = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; END_VAR
+c(s, FALSE, 1);
+c(CD := FALSE);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let division = "PROGRAM p
+VAR_INPUT on : BOOL; END_VAR
+VAR x : DINT := 7; z : DINT; END_VAR
+VAR_OUTPUT y : DINT; END_VAR
+y := x / z;
+END_PROGRAM
+";
+    let enable = "FUNCTION_BLOCK Pump
+VAR_INPUT En : BOOL; END_VAR
+VAR_OUTPUT Off : BOOL; END_VAR
+Off := NOT En;
+END_FUNCTION_BLOCK
+PROGRAM p
+VAR_INPUT on : BOOL; END_VAR
+VAR pump : Pump; END_VAR
+VAR_OUTPUT off : BOOL; END_VAR
+pump(En := on);
+off := pump.Off;
+END_PROGRAM
+";
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    for (name, source, vars, to, said) in [
+        ("calls", calls, "o", "openplc", "Trap 15 (`c`)"),
+        ("calls", calls, "o", "codesys", "Trap 3 (`c`)"),
+        ("division", division, "y", "logix", "a division by zero ("),
+        ("enable", enable, "off", "siemens", "`En` stops the body of `Pump` on iec alone"),
+        ("enable", enable, "off", "codesys", "`En` stops the body of `Pump` on iec alone"),
+    ] {
+        let arguments = ["--from", "iec", "--to", to, "--vars", vars, "--assume", &none];
+        let (code, text) = compare(&format!("one_{name}_{to}"), source, &arguments);
+        assert_eq!(code, Some(1), "{name}: {text}");
+        assert!(text.contains(said) && !text.contains("programs are not the same"), "{name}: {text}");
+    }
+}
+
+/// Of a timer with a PT that is not over at once, no call of OPENPLC comes too late: what differs is what it is given.
+#[test]
+fn a_timer_that_starts_otherwise_is_not_late() {
+    let source = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTU; t : TON; END_VAR
+c(s, r, 2);
+t(IN := c.CV > 2, PT := T#30ms);
+o := t.Q;
+END_PROGRAM
+";
+    let accepted = written("timer.accept", "c 15: known\no output: known\n");
+    let (code, text) =
+        compare("timer", source, &["--from", "iec", "--to", "openplc", "--vars", "o", "--accept", &accepted]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("what the block is given differs") && !text.contains("trap 19"), "{text}");
+}
+
+/// S7 has the standard's SR here, and is not called IEC.
+#[test]
+fn a_pin_is_called_as_on_the_system_of_the_move() {
+    let source = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR c : CTU; t : SR; END_VAR
+c(CU := s, RESET := FALSE, PV := 3);
+t(SET1 := s, RESET := FALSE);
+END_PROGRAM
+";
+    let path = written("pin_names.st", source);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    let output = command.args(["compare", &path, "--from", "codesys", "--to", "siemens"]).output().expect("it starts");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        said.contains("`RESET` is called `R` in S7") && said.contains("`SET1` is called `S1` in SIEMENS"),
+        "{said}"
+    );
+    assert!(!said.contains(" in IEC"), "{said}");
+}
+
+/// Of two counters that part, the one is blamed without whose rule nothing would differ: here the second comes to differ
+/// first, and what is asked of it does not depend on that.
+#[test]
+fn the_counter_that_is_blamed_makes_the_difference_alone() {
+    let second = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTU; d : CTD; END_VAR
+c(s, FALSE, 3);
+d(s, c.CV = 4, 2);
+o := d.Q;
+END_PROGRAM
+";
+    let element = "PROGRAM p
+VAR_INPUT x, y : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; i : INT; a : ARRAY[0..1] OF CTD; END_VAR
+IF NOT y THEN c(x, x, 1); END_IF;
+IF y THEN i := 1; ELSE i := 0; END_IF;
+a[i](y OR x, c.Q, 1);
+o := a[1].Q;
+END_PROGRAM
+";
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    for (number, source, from, to, said) in [
+        (0, second, "iec", "openplc", "Trap 15 (`c`)"),
+        (1, second, "codesys", "siemens", "Trap 2 (`c`)"),
+        (2, element, "siemens", "openplc4", "Trap 17 (`c`)"),
+    ] {
+        let arguments = ["--from", from, "--to", to, "--vars", "o", "--assume", &none];
+        let (code, text) = compare(&format!("alone_{number}"), source, &arguments);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(said), "{text}");
+    }
+}
+
+/// DN of a CTD that is put in place of a block is asked for by nothing, and is no reason.
+#[test]
+fn what_the_port_does_not_read_is_no_reason() {
+    let below = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; m, b : BOOL; END_VAR
+b := s AND NOT m; m := s;
+c(b, l, 3);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let two = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR d : CTD; c : CTU; END_VAR
+d(FALSE, FALSE, 2);
+c(s, r, 2);
+o := d.Q AND c.Q;
+END_PROGRAM
+";
+    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    for (name, source, from, said) in
+        [("below", below, "openplc", "Trap 15 (`c`)"), ("two", two, "iec", "Trap 5 (`c`)")]
+    {
+        let arguments = ["--from", from, "--to", "logix", "--vars", "o", "--assume", &none, "--budget", "100000"];
+        let (code, text) = compare(&format!("unread_{name}"), source, &arguments);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(said) && !text.contains("Trap 4"), "{text}");
+    }
+}
+
+/// OpenPLC has no check of subranges: what is a fault on both sides here is one on the other system alone.
+#[test]
+fn a_fault_of_a_subrange_is_none_on_openplc() {
+    let source = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR n : INT (0..3); END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+IF s THEN n := n + 1; END_IF;
+o := n > 2;
+END_PROGRAM
+";
+    let assumed = written("no_run_of_subrange.txt", "no run\n");
+    for (from, to) in [("openplc", "codesys"), ("iec", "openplc4")] {
+        let (code, text) =
+            compare("subrange", source, &["--from", from, "--to", to, "--vars", "o", "--assume", &assumed]);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("one system faults here, and the other goes on"), "{text}");
+    }
+    let (code, text) =
+        compare("subrange", source, &["--from", "iec", "--to", "codesys", "--vars", "o", "--assume", &assumed]);
+    assert_eq!(code, Some(0), "{text}");
+}

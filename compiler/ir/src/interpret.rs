@@ -1,6 +1,7 @@
 //! The reference interpreter: runs a program over the bytes of its state, with the runtime's own
 //! operations and blocks. What it does is what every back end must do.
 
+mod exchange;
 mod execute;
 mod follow;
 mod loops;
@@ -9,6 +10,7 @@ mod place;
 use crate::layout::{Layout, usize_of};
 use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
+use exchange::Exchange;
 use place::Scope;
 use staunch_runtime::{Context, Fault};
 
@@ -49,6 +51,7 @@ pub struct Interpreter<'p> {
     has_few_turns: bool,
     budget: Option<u64>,
     steps_left: Option<u64>,
+    exchange: Option<Exchange>,
 }
 
 /// A routine's locals at the start of a call.
@@ -88,6 +91,7 @@ impl<'p> Interpreter<'p> {
             has_few_turns: false,
             budget: None,
             steps_left: None,
+            exchange: None,
         }
     }
 

@@ -65,12 +65,17 @@ impl Drive {
 
     /// The programs that are due.
     pub fn scan(&mut self, machine: &mut Compiled) -> Result<(), Fault> {
+        self.scan_by(|instance, cx| machine.scan(instance, cx))
+    }
+
+    /// The next scan, of programs that something else runs.
+    pub fn scan_by(&mut self, mut run: impl FnMut(usize, &Context) -> Result<(), Fault>) -> Result<(), Fault> {
         let now = self.schedule.next();
         self.schedule.advance(now, false);
         for instance in self.schedule.due() {
             let cx = Context::new(now, std::mem::take(&mut self.fresh[*instance]));
             let cx = cx.with_cycle(self.schedule.period(*instance));
-            machine.scan(*instance, &cx)?;
+            run(*instance, &cx)?;
         }
         Ok(())
     }

@@ -71,7 +71,13 @@ impl<'s> Checker<'_, 's> {
         };
         let own = other_dialects_pin(block, name.text).or_else(|| pin_of_data(from, block, name.text));
         let Some(own) = own else { return name };
-        let system = info.family.name();
+        // Several systems have the standard's blocks.
+        let system = match info.family {
+            Family::Iec => self.decl.dialect(name.span).name().to_ascii_uppercase(),
+            Family::Codesys | Family::Cscape | Family::Logix | Family::Openplc | Family::Openplc4 | Family::S7 => {
+                info.family.name().to_owned()
+            }
+        };
         let message = format!("the pin `{}` is called `{own}` in {system}", name.text);
         let lint = Diagnostic::new(Code::W0609, name.span, message).label("a name that the move changes");
         let lint = lint.help(format!("write `{own}`, or give the inputs by position")).fix(name.span, own);

@@ -229,6 +229,7 @@ impl<'p> Interpreter<'p> {
             true
         };
         (instruction.run)(bytes, cx, rung);
+        self.exchanged(offset, cx);
         Ok(())
     }
 

@@ -16,7 +16,7 @@ pub enum Kind {
     /// A variable that an event leaves as it is on one of the two.
     Retention,
     Fault,
-    /// A variable that differs, and no trap or kind says why: the two programs are not the same.
+    /// A variable that differs, and no trap or kind says why.
     Variable,
     /// An output that differs because of an accepted finding.
     Output,
@@ -52,8 +52,8 @@ impl Kind {
         }
     }
 
-    /// Why it differs, where no trap says so.
-    pub const fn reason(self) -> &'static str {
+    /// Why it differs, where no trap says so; of one program on both systems, or of two.
+    pub const fn reason(self, is_one_program: bool) -> &'static str {
         match self {
             Self::Counter => "what it is given differs, or no trap explains it",
             Self::Timer | Self::OneShot | Self::Latch => "what the block is given differs",
@@ -61,6 +61,7 @@ impl Kind {
             Self::Address => "bits at an address are shared on one of the two systems alone",
             Self::Retention => "one system keeps it",
             Self::Fault => "one system faults here, and the other goes on",
+            Self::Variable if is_one_program => "no trap explains it: the two systems run the program otherwise",
             Self::Variable => "no trap explains it: the two programs are not the same",
             Self::Output => "it is an output that follows from an accepted finding",
         }

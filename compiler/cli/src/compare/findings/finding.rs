@@ -1,10 +1,11 @@
 //! For each counter and pitfall: reachable, with inputs that show it; impossible, and why; or undecided.
 
+use super::enable;
 use crate::compare::difference::accept::{Accepted, Line};
 use crate::compare::difference::beyond;
 use crate::compare::difference::kind::Kind;
 use crate::compare::difference::pitfall::{self, Cause, Pitfall, Use};
-use crate::compare::pair::{Matched, Pair};
+use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::scalar::Role;
 use crate::compare::search::progress::Outcome;
 use crate::compare::search::shrink::{self, Goal};
@@ -34,6 +35,8 @@ pub struct Finding {
     /// Where the first program says so; that of a counter is its name.
     pub at: Option<Location>,
     pub pitfall: Option<Pitfall>,
+    /// Why, where neither the trap nor the kind says so.
+    pub because: Option<String>,
     pub verdict: Verdict,
 }
 
@@ -60,7 +63,7 @@ impl Findings {
                     None => Verdict::Undecided,
                 };
                 let (kind, subject) = (Kind::Counter, instances[0].path.clone());
-                all.push(Finding { kind, subject, at: None, pitfall: Some(pitfall), verdict });
+                all.push(Finding { kind, subject, at: None, pitfall: Some(pitfall), because: None, verdict });
             }
         }
         let mut found = Self { all, others: HashMap::new() };
@@ -87,7 +90,7 @@ impl Findings {
 
     fn add(&mut self, key: Subject, kind: Kind, subject: String, at: Option<Location>) {
         self.others.insert(key, self.all.len());
-        self.all.push(Finding { kind, subject, at, pitfall: None, verdict: Verdict::Undecided });
+        self.all.push(Finding { kind, subject, at, pitfall: None, because: None, verdict: Verdict::Undecided });
     }
 
     pub fn all_impossible(&mut self, why: &str) {
@@ -176,16 +179,19 @@ impl Findings {
         }
     }
 
-    /// Variables that differ at the end of a trace which no trap explains, and no finding does.
-    pub fn unexplained(&mut self, pair: &Pair, differences: &[Matched], trace: &Trace) {
-        let found = differences.iter().filter(|it| pair.scalar(0, it[0]).role == Role::Variable);
-        let found: Vec<_> = found.map(|it| described(pair, Subject::Parted(*it))).collect();
+    /// Variables that differ at the end of a trace which no trap explains, and no finding does. A fault is a finding.
+    pub fn unexplained(&mut self, pair: &Pair, row: &Row, differences: &[Matched], trace: &Trace) {
+        if pair.faults_differ(row.faults) {
+            return;
+        }
         let is_known =
             |it: &Finding, at| it.at == at && !matches!(it.verdict, Verdict::Impossible(_) | Verdict::Undecided);
-        for (kind, subject, at) in found {
+        for matched in differences.iter().filter(|it| pair.scalar(0, it[0]).role == Role::Variable) {
+            let (kind, subject, at) = described(pair, Subject::Parted(*matched));
             if !self.all.iter().any(|it| it.subject == subject && is_known(it, at)) {
                 let verdict = Verdict::Reachable(Some(trace.clone()));
-                self.all.push(Finding { kind, subject, at, pitfall: None, verdict });
+                let because = enable::reason(pair, row, *matched);
+                self.all.push(Finding { kind, subject, at, pitfall: None, because, verdict });
             }
         }
     }
@@ -195,7 +201,7 @@ impl Findings {
         for it in differences {
             let (kind, subject, at) = described(pair, Subject::Output(*it));
             let verdict = Verdict::Reachable(Some(trace.clone()));
-            self.all.push(Finding { kind, subject, at, pitfall: None, verdict });
+            self.all.push(Finding { kind, subject, at, pitfall: None, because: None, verdict });
         }
     }
 
@@ -214,7 +220,7 @@ impl Findings {
             }
             None => {
                 let (kind, subject, at) = described(pair, subject);
-                self.all.push(Finding { kind, subject, at, pitfall, verdict });
+                self.all.push(Finding { kind, subject, at, pitfall, because: None, verdict });
             }
         }
     }
@@ -253,6 +259,11 @@ fn described(pair: &Pair, subject: Subject) -> (Kind, String, Option<Location>) 
 }
 
 impl Finding {
+    /// Why it differs, where no trap says so.
+    pub fn reason(&self, is_one_program: bool) -> &str {
+        self.because.as_deref().unwrap_or_else(|| self.kind.reason(is_one_program))
+    }
+
     /// Whether it is reason enough to fail: not what only follows from another finding.
     pub fn is_reachable(&self) -> bool {
         let follows = match self.kind {
@@ -299,6 +310,7 @@ mod tests {
             at: None,
             subject: "parts".to_owned(),
             pitfall: Some(Pitfall::numbered(2)),
+            because: None,
             verdict: Verdict::Impossible("it does not count up".to_owned()),
         };
         let findings = Findings { all: vec![finding], ..Findings::default() };

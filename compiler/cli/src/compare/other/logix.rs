@@ -4,6 +4,7 @@
 mod edit;
 
 mod counter;
+mod instructions;
 mod shape;
 
 mod writer;
@@ -12,6 +13,7 @@ use edit::{Edit, bounds, origin};
 use shape::Shapes;
 use staunch_frontend::ast::{File, Item, VarBlock};
 use staunch_frontend::{Dialect, Sources, Span, parse_file};
+use std::collections::HashSet;
 use writer::Writer;
 
 pub struct Rewritten {
@@ -45,8 +47,15 @@ pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
     let mut shapes = Shapes::of(&files, from);
     globals(&files).for_each(|it| it.vars.iter().for_each(|it| shapes.declare(it)));
     let (mut notes, mut all, mut texts) = (Vec::new(), Vec::new(), Vec::new());
+    let mut loaded = HashSet::new();
     for (source, file) in sources.files().iter().zip(&files) {
-        let mut writer = Writer::new(&source.text, shapes);
+        // What a counter is read as depends on its calls, wherever they are.
+        let mut first = Writer::new(&source.text, shapes, loaded);
+        first.file(file);
+        (shapes, loaded) = (first.shapes, first.loaded);
+    }
+    for (source, file) in sources.files().iter().zip(&files) {
+        let mut writer = Writer::new(&source.text, shapes, loaded.clone());
         writer.file(file);
         notes.extend(writer.notes());
         texts.push(writer.apply(0, source.text.len()));

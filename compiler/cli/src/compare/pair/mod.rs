@@ -7,6 +7,7 @@ mod settled;
 mod side;
 
 mod comparison;
+mod exchange;
 mod matching;
 pub mod passing;
 
@@ -126,10 +127,14 @@ impl Pair {
     /// The variables that are compared: all that both sides have, or those that are named.
     pub fn compare_only(&mut self, only: &[String]) {
         self.compared = matching::compared(&self.sides, &self.inputs, only);
-        if self.is_ported && only.is_empty() {
+        if self.is_ported {
             let has_counterpart = |it: &Matched| !matching::is_done_of_down(&self.sides, *it);
-            self.compared.retain(has_counterpart);
-            self.outputs.iter_mut().for_each(|it| it.retain(has_counterpart));
+            let is_named = |it: &Matched, compared: &[Matched]| !only.is_empty() && compared.contains(it);
+            let named = self.compared.clone();
+            self.compared.retain(|it| has_counterpart(it) || is_named(it, &named));
+            for outputs in &mut self.outputs {
+                outputs.retain(|it| has_counterpart(it) || is_named(it, &named));
+            }
             self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         }
         self.compared_bytes = Comparison::of(&self.sides, &self.compared);
@@ -408,14 +413,29 @@ impl Pair {
         self.is_other(at, "PT")
     }
 
-    /// Whether a block is given the same PT on both sides, if it has one: else it differs by that.
-    pub fn has_one_preset(&self, at: usize, states: [&[u8]; 2]) -> bool {
-        let preset = |side: usize| {
-            let scalars = &self.sides[side].scalars;
-            let path = format!("{}.PT", scalars.blocks[self.blocks[at][side]].path);
-            scalars.all.iter().position(|it| it.path == path)
-        };
-        preset(0).zip(preset(1)).is_none_or(|(a, b)| self.equal([a, b], states))
+    /// Whether a block is given the same on both sides; else it differs by that.
+    pub fn is_given_alike(&self, at: usize, states: [&[u8]; 2]) -> bool {
+        let pins = |side: usize| self.sides[side].scalars.blocks[self.blocks[at][side]].block.info().inputs();
+        let shared = pins(0).filter(|it| pins(1).any(|other| other.name == it.name));
+        let mut both = shared.filter_map(|it| Some([self.pin(at, 0, it.name)?, self.pin(at, 1, it.name)?]));
+        both.all(|it| self.equal(it, states))
+    }
+
+    /// Whether the time of a timer is over as it begins.
+    pub fn is_over_at_once(&self, at: usize, states: [&[u8]; 2]) -> bool {
+        (0..2).all(|side| {
+            let preset = self.pin(at, side, "PT").map(|it| &self.sides[side].scalars.all[it]);
+            let program = &self.sides[side].program;
+            let value = preset.and_then(|it| scalar::number(program, it, states[side]));
+            value.is_none_or(|it| it <= 0)
+        })
+    }
+
+    /// The scalar of a block's pin.
+    fn pin(&self, at: usize, side: usize, pin: &str) -> Option<usize> {
+        let scalars = &self.sides[side].scalars;
+        let path = format!("{}.{pin}", scalars.blocks[self.blocks[at][side]].path);
+        scalars.all.iter().position(|it| it.path == path)
     }
 
     fn is_other(&self, at: usize, pin: &str) -> bool {

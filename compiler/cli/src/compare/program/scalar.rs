@@ -325,12 +325,17 @@ impl Instance {
     /// The value of the pin with a role.
     pub fn pin(&self, role: PinRole, state: &[u8]) -> Option<i128> {
         let pin = self.block.info().pin_for(role)?;
-        number(Value::read(pin.repr(), &state[self.offset + pin.offset..]))
+        as_number(Value::read(pin.repr(), &state[self.offset + pin.offset..]))
     }
 }
 
+/// What a scalar holds, where that is a number.
+pub fn number(program: &Program, scalar: &Scalar, state: &[u8]) -> Option<i128> {
+    as_number(Value::read(program.repr(scalar.ty)?, &state[scalar.offset..]))
+}
+
 /// A BOOL counts as 0 or 1.
-fn number(value: Value) -> Option<i128> {
+fn as_number(value: Value) -> Option<i128> {
     match value {
         Value::Bool(it) => Some(i128::from(it)),
         other => other.as_integer(),
@@ -348,7 +353,7 @@ pub fn equal(programs: [&Program; 2], all: [&Scalars; 2], scalars: [&Scalar; 2],
     match reprs {
         [Some(x), Some(y)] if x != y => {
             let (a, b) = (Value::read(x, a), Value::read(y, b));
-            number(a).is_some() && number(a) == number(b)
+            as_number(a).is_some() && as_number(a) == as_number(b)
         }
         [Some(_), Some(_)] => a == b,
         _ => a == b || text(scalars[0], a) == text(scalars[1], b),

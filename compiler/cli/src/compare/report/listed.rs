@@ -29,7 +29,7 @@ impl Report<'_> {
         for (subject, kind, at) in subjects {
             let is_own = |it: &&Finding| (it.subject.as_str(), it.kind, it.at) == (subject, kind, at);
             let own: Vec<&Finding> = findings.all.iter().filter(is_own).collect();
-            let lines = (kind, of_subject(&own, accepted, self.session.common.verbose > 0));
+            let lines = (kind, self.of_subject(&own, accepted));
             let place = at.map_or_else(String::new, |it| format!(" ({}, {})", kind.name(), self.place(it)));
             let heading = format!("`{subject}`{place}");
             match known.iter_mut().find(|it| it.0 == lines) {
@@ -44,6 +44,40 @@ impl Report<'_> {
             let _ = write!(text, "\n{}{more}\n{lines}", headings[0]);
         }
         text
+    }
+}
+
+impl Report<'_> {
+    /// What is known of one counter.
+    fn of_subject(&self, own: &[&Finding], accepted: &Accepted) -> String {
+        let mut text = String::new();
+        for finding in own {
+            if let finding::Verdict::Reachable(trace) = &finding.verdict {
+                let _ = writeln!(text, "  {}{}", self.reached(finding, trace.as_ref()), note(finding, accepted));
+            }
+        }
+        let undecided: Vec<&&Finding> =
+            own.iter().filter(|it| matches!(it.verdict, finding::Verdict::Undecided)).collect();
+        let traps: Vec<String> =
+            undecided.iter().filter_map(|it| Some(format!("{}{}", it.pitfall?.number(), note(it, accepted)))).collect();
+        if !traps.is_empty() {
+            let _ = writeln!(text, "  undecided: trap {}", traps.join(", "));
+        } else if !undecided.is_empty() {
+            text.push_str("  undecided: it was not seen to differ\n");
+        }
+        text + &impossible(own, self.session.common.verbose > 0)
+    }
+
+    fn reached(&self, finding: &Finding, trace: Option<&Trace>) -> String {
+        let when = match trace.map(Trace::scans) {
+            Some(1) => "after 1 scan".to_owned(),
+            Some(scans) => format!("after {scans} scans"),
+            None => "in the text".to_owned(),
+        };
+        match finding.pitfall {
+            Some(pitfall) => format!("reachable {when}: trap {}. {}", pitfall.number(), pitfall.sentence()),
+            None => format!("differs {when}: {}", finding.reason(self.is_one_program())),
+        }
     }
 }
 
@@ -71,37 +105,6 @@ fn outputs(findings: &Findings, accepted: &Accepted) -> String {
     match lines.as_slice() {
         [] => String::new(),
         lines => format!("An output needs a line of its own in the file of accepted findings: {}.\n", lines.join(", ")),
-    }
-}
-
-/// What is known of one counter.
-fn of_subject(own: &[&Finding], accepted: &Accepted, verbose: bool) -> String {
-    let mut text = String::new();
-    for finding in own {
-        if let finding::Verdict::Reachable(trace) = &finding.verdict {
-            let _ = writeln!(text, "  {}{}", reached(finding, trace.as_ref()), note(finding, accepted));
-        }
-    }
-    let undecided: Vec<&&Finding> = own.iter().filter(|it| matches!(it.verdict, finding::Verdict::Undecided)).collect();
-    let traps: Vec<String> =
-        undecided.iter().filter_map(|it| Some(format!("{}{}", it.pitfall?.number(), note(it, accepted)))).collect();
-    if !traps.is_empty() {
-        let _ = writeln!(text, "  undecided: trap {}", traps.join(", "));
-    } else if !undecided.is_empty() {
-        text.push_str("  undecided: it was not seen to differ\n");
-    }
-    text + &impossible(own, verbose)
-}
-
-fn reached(finding: &Finding, trace: Option<&Trace>) -> String {
-    let when = match trace.map(Trace::scans) {
-        Some(1) => "after 1 scan".to_owned(),
-        Some(scans) => format!("after {scans} scans"),
-        None => "in the text".to_owned(),
-    };
-    match finding.pitfall {
-        Some(pitfall) => format!("reachable {when}: trap {}. {}", pitfall.number(), pitfall.sentence()),
-        None => format!("differs {when}: {}", finding.kind.reason()),
     }
 }
 

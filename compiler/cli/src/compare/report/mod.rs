@@ -38,6 +38,11 @@ impl Report<'_> {
         self.session.common.format() == MessageFormat::Json
     }
 
+    /// Whether both systems run the same text, or what was made of it here.
+    fn is_one_program(&self) -> bool {
+        self.args.against.is_none()
+    }
+
     fn names(&self) -> [&'static str; 2] {
         [self.args.from.name, self.args.to.name]
     }

@@ -105,7 +105,9 @@ impl Report<'_> {
         accepted: &Accepted,
     ) -> String {
         let (verdict, why) = match &finding.verdict {
-            finding::Verdict::Reachable(_) if finding.pitfall.is_none() => ("reachable", quoted(finding.kind.reason())),
+            finding::Verdict::Reachable(_) if finding.pitfall.is_none() => {
+                ("reachable", quoted(finding.reason(self.is_one_program())))
+            }
             finding::Verdict::Reachable(_) => ("reachable", "null".to_owned()),
             finding::Verdict::Impossible(why) => ("impossible", quoted(why)),
             finding::Verdict::Undecided => ("undecided", "null".to_owned()),
@@ -126,7 +128,7 @@ impl Report<'_> {
         let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
         let sentence = cause.pitfall.map_or("null".to_owned(), |it| quoted(it.sentence()));
         let advice = cause.pitfall.map_or("null".to_owned(), |it| {
-            quoted(&it.advice(self.args.from.dialect, self.args.to.dialect, cause.form(pair)))
+            quoted(&it.advice(self.args.from.dialect, self.args.to.dialect, cause.counting(pair)))
         });
         let counter = cause.counter.as_deref().map_or("null".to_owned(), quoted);
         let variables: Vec<_> = differences.iter().map(|it| quoted(pair.path(*it))).collect();

@@ -23,7 +23,7 @@ instructions, one a rung:
 Give the rewritten program with --against FILE to compare it";
 
 const FROM_LOGIX: &str = "A COUNTER and its instructions become an instance and its call: CTU(c, rung) and RES(c, clear) are \
-`c(CU := rung, R := clear, PV := preset)`, c.DN is c.Q, c.ACC is c.CV. Give the rewritten program with --against FILE to \
+`c(CU := rung, {R} := clear, PV := preset)` (of a CTD `c(CD := rung, {LD} := load, PV := preset)`), c.DN is c.Q, c.ACC is c.CV. Give the rewritten program with --against FILE to \
 compare it";
 
 const TIMERS_FROM_LOGIX: &str = "A TIMER and its instructions become an instance and its call: TON(t, rung) is \
@@ -62,7 +62,7 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
         return Rejection { pitfall: None, why, advice: TIMERS_FROM_LOGIX.to_owned() };
     }
     if from == Dialect::Logix && block {
-        return Rejection { pitfall: pitfall(11), why, advice: FROM_LOGIX.to_owned() };
+        return Rejection { pitfall: pitfall(11), why, advice: from_logix(target) };
     }
     let counter = from.block(&name);
     let kept = counter.and_then(|it| it.facts.kept);
@@ -90,6 +90,12 @@ fn of(to: &Session, error: &Diagnostic, from: Dialect, target: Dialect) -> Rejec
         },
         None => Rejection { pitfall: None, why, advice: "Change it as the message says".to_owned() },
     }
+}
+
+/// With the names that the system has for the pins of its counters.
+fn from_logix(target: Dialect) -> String {
+    let pin = |block: &str, role: PinRole| target.block(block).and_then(|it| it.pin_for(role)).map_or("", |it| it.name);
+    FROM_LOGIX.replace("{R}", pin("CTU", PinRole::Reset)).replace("{LD}", pin("CTD", PinRole::Load))
 }
 
 /// Whether the error is about whole numbers that do not fit one another's types, and of no other type.

@@ -85,7 +85,7 @@ impl Report<'_> {
                 let _ = writeln!(
                     text,
                     "What to do: {}",
-                    pitfall.advice(self.args.from.dialect, self.args.to.dialect, cause.form(pair))
+                    pitfall.advice(self.args.from.dialect, self.args.to.dialect, cause.counting(pair))
                 );
             }
             None => text += &self.unexplained(pair, rows, &differences, findings),
@@ -100,9 +100,21 @@ impl Report<'_> {
                 let place = it.at.map_or_else(String::new, |at| format!(", {}", self.place(at)));
                 let path = pair.path(of);
                 let follows = if path == it.subject { String::new() } else { format!("`{path}` follows from ") };
-                format!("{follows}`{}` ({}{place}): {}.\n", it.subject, it.kind.name(), it.kind.reason())
+                format!(
+                    "{follows}`{}` ({}{place}): {}.\n",
+                    it.subject,
+                    it.kind.name(),
+                    it.reason(self.is_one_program())
+                )
             }
-            None => "None of the traps explains it; see `docs/compare.md`.\n".to_owned(),
+            None => self.fault_of_one(pair, rows).unwrap_or_else(|| {
+                let own = |it: &Matched| findings.all.iter().find(|finding| finding.subject == pair.path(*it));
+                let because = differences.iter().find_map(|it| own(it)?.because.as_deref());
+                because.map_or_else(
+                    || "None of the traps explains it; see `docs/compare.md`.\n".to_owned(),
+                    |it| format!("None of the traps explains it: {it}.\n"),
+                )
+            }),
         }
     }
 
@@ -130,6 +142,22 @@ impl Report<'_> {
             next = at + 1;
         }
         lines
+    }
+
+    /// What one system alone makes a fault of.
+    fn fault_of_one(&self, pair: &Pair, rows: &[Row]) -> Option<String> {
+        let faults = rows.last().map(|it| it.faults).filter(|it| pair.faults_differ(*it))?;
+        let side = usize::from(faults[0].is_none());
+        let (fault, names) = (faults[side]?, self.names());
+        if faults[1 - side].is_some() {
+            return None;
+        }
+        let (place, kind) = (self.place(fault.at), fault.kind);
+        Some(format!(
+            "None of the traps explains it: a {kind} ({place}) is a fault on {}, and {} goes on.\n",
+            names[side],
+            names[1 - side]
+        ))
     }
 
     fn faults(&self, rows: &[Row]) -> String {

@@ -66,11 +66,13 @@ fn sightings(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -
 /// The blocks that have parted in the last scan, by an event or by what they are given.
 fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
     let restarted = (event.is_some() || pair.is_restarted()).then_some(Pitfall::RESTART);
+    let is_late = |at: usize| {
+        let states = pair.states();
+        pair.is_other_timer(at) && pair.is_given_alike(at, states) && pair.is_over_at_once(at, states)
+    };
     let pitfall = |at: usize| match () {
-        () if pair.is_other_one_shot(at) => Some(Pitfall::FIRST_FALL),
-        () if restarted.is_none() && pair.is_other_timer(at) && pair.has_one_preset(at, pair.states()) => {
-            Some(Pitfall::LATER_CALL)
-        }
+        () if pair.is_other_one_shot(at) && pair.is_given_alike(at, pair.states()) => Some(Pitfall::FIRST_FALL),
+        () if restarted.is_none() && is_late(at) => Some(Pitfall::LATER_CALL),
         () => restarted,
     };
     let parted = |outputs: &[Matched]| {

@@ -79,10 +79,10 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
             let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
             let names: Vec<&str> = differences.iter().take(3).map(|it| pair.path(*it)).collect();
             let scans = if rows.len() == 1 { "1 scan".to_owned() } else { format!("{} scans", rows.len()) };
-            let form = cause.form(pair);
+            let counting = cause.counting(pair);
             let of = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
             let trap = cause.pitfall.map_or_else(String::new, |it| {
-                let advice = it.advice(args.from.dialect, args.to.dialect, form);
+                let advice = it.advice(args.from.dialect, args.to.dialect, counting);
                 format!(". Trap {}{of}: {} What to do: {}", it.number(), it.sentence(), advice.trim_end_matches('.'))
             });
             let place = match names.is_empty() {
@@ -129,8 +129,11 @@ fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findin
     let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
     let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
     findings.explain(&cause, trace);
-    if cause.pitfall.is_none() && reason::find(pair, &rows, &differences, findings).is_none() {
-        findings.unexplained(pair, &differences, trace);
+    if cause.pitfall.is_none()
+        && reason::find(pair, &rows, &differences, findings).is_none()
+        && let Some(last) = rows.last()
+    {
+        findings.unexplained(pair, last, &differences, trace);
     }
     Verdict::Differs { rows, trace: Some(trace.clone()), shortest }
 }

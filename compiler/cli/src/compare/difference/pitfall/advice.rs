@@ -4,25 +4,25 @@
 mod form;
 mod texts;
 
-pub use form::Form;
+pub use form::{Counting, Form};
 
 use super::list::Pitfall;
 use form::Advice;
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
-use texts::{BLOCKS, FALLING, FROM_LOGIX, TO_LOGIX};
+use texts::{BLOCKS, FALLING, FROM_LOGIX, RISES, TO_LOGIX};
 
 /// Where no text is proved.
 const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
      with `--against`.";
 
 fn all() -> impl Iterator<Item = &'static Advice> {
-    BLOCKS.iter().chain(FALLING).chain(TO_LOGIX).chain(FROM_LOGIX)
+    BLOCKS.iter().chain(FALLING).chain(RISES).chain(TO_LOGIX).chain(FROM_LOGIX)
 }
 
 impl Pitfall {
     /// What to do on the system that the program moves to.
-    pub fn advice(self, from: Dialect, to: Dialect, form: Form) -> String {
-        let mut texts: Vec<&str> = said(self.number(), from, to, form).map(|it| it.text).collect();
+    pub fn advice(self, from: Dialect, to: Dialect, counting: Counting) -> String {
+        let mut texts: Vec<&str> = said(self.number(), from, to, counting).map(|it| it.text).collect();
         texts.dedup();
         if texts.is_empty() {
             return OWN.to_owned();
@@ -35,8 +35,8 @@ impl Pitfall {
     }
 }
 
-fn said(pitfall: usize, from: Dialect, to: Dialect, form: Form) -> impl Iterator<Item = &'static Advice> {
-    let found = all().filter(move |it| it.pitfalls.contains(&pitfall) && it.is_for(form));
+fn said(pitfall: usize, from: Dialect, to: Dialect, counting: Counting) -> impl Iterator<Item = &'static Advice> {
+    let found = all().filter(move |it| it.pitfalls.contains(&pitfall) && it.is_for(counting));
     found.filter(move |it| it.from.contains(&from) && it.to.contains(&to))
 }
 
@@ -61,8 +61,10 @@ mod tests {
                 Form::UpDown => "CTUD",
             });
             let mut words = case.split(|it: char| !it.is_ascii_alphanumeric());
+            let sets = |value: &str| case.contains(&format!("setting openplc4-cd-edge = \"{value}\""));
+            let is_set = it.rises.is_none_or(|rises| rises == sets("rising"));
             let counts = instruction.is_empty() || words.any(|it| it == instruction);
-            number == pitfall.to_string() && name == Some(it.name) && has(a, from) && has(b, to) && counts
+            number == pitfall.to_string() && name == Some(it.name) && has(a, from) && has(b, to) && counts && is_set
         })
     }
 

@@ -1,6 +1,6 @@
 //! The counter that a difference comes from, and its pitfall.
 
-use super::advice::Form;
+use super::advice::{Counting, Form};
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
 use super::list::Pitfall;
 use crate::compare::pair::{Matched, Pair, Row};
@@ -8,7 +8,7 @@ use crate::compare::program::apart::Declared;
 use crate::compare::program::dependency::Dependencies;
 use crate::compare::program::scalar::{Instance, Role};
 use staunch_host::Event;
-use staunch_runtime::PinRole;
+use staunch_runtime::{Family, PinRole};
 use std::collections::HashSet;
 
 /// What the last scan has made of a counter: `None` where it has not parted by it, and within it no
@@ -95,18 +95,22 @@ pub struct Cause {
 
 impl Cause {
     /// Which way the counter counts: of a COUNTER, by the other system's block.
-    pub fn form(&self, pair: &Pair) -> Form {
+    pub fn counting(&self, pair: &Pair) -> Counting {
         let numbers = 0..pair.counters.len();
         let mut found = numbers.map(|it| pair.instances(it)).filter(|it| Some(&it[0].path) == self.counter.as_ref());
-        found.next().map_or(Form::Up, |instances| {
-            let is_tag = |it: &&Instance| it.block.info().name.eq_ignore_ascii_case("COUNTER");
-            let block = instances.into_iter().find(|it| !is_tag(it));
-            match block.map(|it| (it.has(PinRole::Up), it.has(PinRole::Down))) {
-                Some((false, true)) => Form::Down,
-                Some((true, true)) => Form::UpDown,
-                Some((_, false)) | None => Form::Up,
-            }
-        })
+        let Some(instances) = found.next() else { return Counting { form: Form::Up, rises: false } };
+        let rises = instances.iter().any(|it| {
+            let info = it.block.info();
+            info.family == Family::Openplc4 && !info.facts.counts_falls
+        });
+        let is_tag = |it: &&Instance| it.block.info().name.eq_ignore_ascii_case("COUNTER");
+        let block = instances.into_iter().find(|it| !is_tag(it));
+        let form = match block.map(|it| (it.has(PinRole::Up), it.has(PinRole::Down))) {
+            Some((false, true)) => Form::Down,
+            Some((true, true)) => Form::UpDown,
+            Some((_, false)) | None => Form::Up,
+        };
+        Counting { form, rises }
     }
 }
 
@@ -149,12 +153,17 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
 struct Relevant {
     dependencies: Dependencies,
     differences: HashSet<Declared>,
+    found: Vec<Matched>,
 }
 
 impl Relevant {
     fn of(pair: &Pair, differences: &[Matched]) -> Self {
         let declared = differences.iter().filter_map(|it| pair.declared(0, *it)).collect();
-        Self { dependencies: Dependencies::of(&pair.sides[0].program), differences: declared }
+        Self {
+            dependencies: Dependencies::of(&pair.sides[0].program),
+            differences: declared,
+            found: differences.to_vec(),
+        }
     }
 
     /// Whether a variable decides them, without going through others. A fault may follow from anything.
@@ -186,6 +195,9 @@ fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     let declared = |counter: usize| pair.instances(counter)[0].field;
     let all = (0..habits.len()).filter(|it| relevant.has(declared(*it), &HashSet::new()));
     let found: Vec<Parting> = all.filter_map(|it| parting(pair, rows, it, habits[it])).collect();
+    if let Some(found) = exchanged(pair, rows, relevant, &found) {
+        return Some(found);
+    }
     let roots: Vec<Parting> = found.iter().copied().filter(|it| it.is_root).collect();
     let is_near = |it: &&Parting| {
         let others = roots.iter().map(|it| it.counter).filter(|other| *other != it.counter);
@@ -196,6 +208,15 @@ fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     };
     let first = |found: &mut dyn Iterator<Item = &Parting>| found.min_by_key(|it| it.row).copied();
     first(&mut roots.iter().filter(is_near)).or_else(|| first(&mut roots.iter())).or_else(|| first(&mut found.iter()))
+}
+
+/// Of several counters that part, the first with which nothing of what is looked at differs any more where it alone is
+/// computed as on the other system.
+fn exchanged(pair: &Pair, rows: &[Row], relevant: &Relevant, found: &[Parting]) -> Option<Parting> {
+    let mut sorted = found.to_vec();
+    sorted.sort_by_key(|it| it.row);
+    let several = sorted.len() > 1 && !relevant.found.is_empty();
+    sorted.into_iter().filter(|_| several).find(|it| pair.agrees_with(it.counter, rows, &relevant.found))
 }
 
 /// The first row in which a counter parts by a pitfall.
@@ -220,20 +241,26 @@ fn case_in(pair: &Pair, rows: &[Row], at: usize, counter: usize, habits: Habits)
 
 /// The first F_TRIG that comes to differ because it is another block on the other system.
 fn first_fall(pair: &Pair, rows: &[Row]) -> Option<String> {
-    first_other(pair, rows, |it| pair.is_other_one_shot(it))
+    first_other(pair, rows, |it| pair.is_other_one_shot(it), |it, states| pair.is_given_alike(it, states))
 }
 
 /// The first timer that does.
 fn later_call(pair: &Pair, rows: &[Row]) -> Option<String> {
-    first_other(pair, rows, |it| pair.is_other_timer(it))
+    let may = |it: usize, states: [&[u8]; 2]| pair.is_given_alike(it, states) && pair.is_over_at_once(it, states);
+    first_other(pair, rows, |it| pair.is_other_timer(it), may)
 }
 
-fn first_other(pair: &Pair, rows: &[Row], is_other: impl Fn(usize) -> bool) -> Option<String> {
+fn first_other(
+    pair: &Pair,
+    rows: &[Row],
+    is_other: impl Fn(usize) -> bool,
+    may: impl Fn(usize, [&[u8]; 2]) -> bool,
+) -> Option<String> {
     let parts = |at: usize, block: usize| {
         let outputs = &pair.block_outputs[block];
         let part =
             outputs.iter().all(|it| agrees(pair, rows, at, *it)) && outputs.iter().any(|it| !pair.same(*it, &rows[at]));
-        part && pair.has_one_preset(block, rows[at].states.each_ref().map(Vec::as_slice))
+        part && may(block, rows[at].states.each_ref().map(Vec::as_slice))
     };
     let others: Vec<_> = (0..pair.blocks.len()).filter(|it| is_other(*it)).collect();
     let first = (0..rows.len()).find_map(|at| others.iter().copied().find(|it| parts(at, *it)))?;

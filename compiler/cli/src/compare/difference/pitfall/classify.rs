@@ -119,10 +119,7 @@ impl Case {
     /// One side is below 0, the other stays at it, by their rules.
     fn past_zero(&self) -> bool {
         let [a, b] = self.now;
-        goes_below(self.kinds[0]) != goes_below(self.kinds[1])
-            && a.count.min(b.count) < 0
-            && a.count.max(b.count) == 0
-            && self.down()
+        goes_below(self.kinds[0]) != goes_below(self.kinds[1]) && a.count.min(b.count) < 0 && a.count.max(b.count) == 0
     }
 
     /// CD rises on one side alone, where the other has held it since the call before: a guard has made the edge.

@@ -6,7 +6,7 @@ pub struct Pitfall(usize);
 
 const PITFALLS: [&str; 20] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
-    "Past PV: CSCAPE holds; `IF c.CV > PV` never fires there, `CV = PV` fires for long.",
+    "Past PV: CSCAPE holds, and so does CODESYS with `ctu-stop-at-pv = true`; `IF c.CV > PV` never fires there, `CV = PV` fires for long.",
     "CTD at 0: IEC, S7 and Logix go negative; CSCAPE and CODESYS stay.",
     "Logix CTD: DN is TRUE while ACC >= PRE, so it drops when done; there is no load input.",
     "Input already TRUE at start-up: Logix does not count it, the others do.",

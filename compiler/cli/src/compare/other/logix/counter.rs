@@ -60,6 +60,11 @@ impl Counter {
         }
     }
 
+    /// Whether an output says that the preset is reached: QU, and Q of a CTU.
+    pub fn is_done(self, pin: &str) -> bool {
+        self.direction != Direction::Down && self.block.pin(pin).is_some_and(|it| it.role == Some(PinRole::Done))
+    }
+
     /// What an argument at this position is for; after the inputs, the variable that keeps the count.
     pub fn input_at(self, at: usize) -> Option<Input> {
         match self.block.inputs().nth(at) {

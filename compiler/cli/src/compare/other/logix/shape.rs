@@ -131,6 +131,22 @@ fn vars<'f>(blocks: &'f [VarBlock<'f>]) -> impl Iterator<Item = &'f VarDecl<'f>>
     blocks.iter().flat_map(|it| &it.vars)
 }
 
+/// The name of a variable or member, or of the array that an element is of.
+pub fn last_name(expr: &Expr<'_>) -> Option<String> {
+    match &expr.kind {
+        ExprKind::Name(name) | ExprKind::Member(_, name) => Some(key(*name)),
+        ExprKind::Index(inner, _) | ExprKind::Paren(inner) | ExprKind::Deref(inner) => last_name(inner),
+        ExprKind::Literal(_)
+        | ExprKind::Address(_)
+        | ExprKind::Part(..)
+        | ExprKind::Unary(..)
+        | ExprKind::Binary(..)
+        | ExprKind::Call(..)
+        | ExprKind::Assign(..)
+        | ExprKind::Error(_) => None,
+    }
+}
+
 fn key(name: Name<'_>) -> String {
     name.text.to_ascii_uppercase()
 }

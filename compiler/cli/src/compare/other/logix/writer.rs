@@ -2,36 +2,28 @@
 
 use super::counter::{Counter, Direction, Input};
 use super::edit::{Edit, bounds};
-use super::shape::{Shape, Shapes};
+use super::instructions;
+use super::shape::{Shape, Shapes, last_name};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{
     Argument, ArgumentKind, BinaryOp, Expr, ExprKind, File, Initial, InitialKind, Item, Name, Pou, Statement,
     StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl,
 };
 use staunch_runtime::PinRole;
+use std::collections::HashSet;
 
 /// What is written for one file.
 pub struct Writer<'t, 'f> {
     text: &'t str,
     pub shapes: Shapes<'f>,
     pub edits: Vec<Edit>,
-}
-
-/// Counting, then resetting: reset wins.
-fn up(owner: &str, counts: Option<&str>, resets: Option<&str>) -> Vec<String> {
-    let count = counts.map(|it| format!("CTU({owner}, {it})"));
-    let reads_itself = |it: &&str| it.to_ascii_uppercase().contains(&format!("{}.", owner.to_ascii_uppercase()));
-    // A reset that reads the counter is decided before the instruction that counts changes it.
-    if let (Some(reset), Some(count)) = (resets.filter(reads_itself), &count) {
-        return vec![format!("IF {reset} THEN {count}; RES({owner}, TRUE); ELSE {count}; END_IF")];
-    }
-    let reset = resets.map(|it| format!("RES({owner}, {it})"));
-    count.into_iter().chain(reset).collect()
+    /// Names of counters that a call loads after the instruction.
+    pub loaded: HashSet<String>,
 }
 
 impl<'t, 'f> Writer<'t, 'f> {
-    pub fn new(text: &'t str, shapes: Shapes<'f>) -> Self {
-        Self { text, shapes, edits: Vec::new() }
+    pub fn new(text: &'t str, shapes: Shapes<'f>, loaded: HashSet<String>) -> Self {
+        Self { text, shapes, edits: Vec::new(), loaded }
     }
 
     pub fn file(&mut self, file: &'f File<'f>) {
@@ -287,6 +279,9 @@ impl<'t, 'f> Writer<'t, 'f> {
         if counter.is_empty(name.text) {
             return self.replace(expr.span, format!("({owner}.ACC <= 0)"));
         }
+        if self.is_done_late(base, counter, name.text) {
+            return self.replace(expr.span, format!("({owner}.ACC >= {owner}.PRE)"));
+        }
         let text = match (counter.member(name.text), counter.narrow) {
             (Some(tag @ ("ACC" | "PRE")), Some(conversion)) if narrow => format!("{conversion}({owner}.{tag})"),
             (Some(tag), _) => format!("{owner}.{tag}"),
@@ -313,18 +308,17 @@ impl<'t, 'f> Writer<'t, 'f> {
         let mut lines = Vec::new();
         lines.extend(get(PinRole::Preset).map(|it| format!("{owner}.PRE := {it}")));
         match counter.direction {
-            Direction::Up => lines.extend(up(&owner, get(PinRole::Up), get(PinRole::Reset))),
-            Direction::Down => {
-                lines.extend(get(PinRole::Down).map(|it| format!("CTD({owner}, {it})")));
-                lines.extend(get(PinRole::Load).map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
-            }
+            Direction::Up => lines.extend(instructions::up(&owner, get(PinRole::Up), get(PinRole::Reset))),
+            Direction::Down => lines.extend(instructions::down(&owner, get(PinRole::Down), get(PinRole::Load))),
             Direction::Both => {
                 for role in [PinRole::Up, PinRole::Down, PinRole::Reset] {
                     let member = counter.tag.pin_for(role);
                     lines.extend(get(role).zip(member).map(|(it, member)| format!("{owner}.{} := {it}", member.name)));
                 }
-                lines.push(format!("CTUD({owner})"));
-                lines.extend(get(PinRole::Load).map(|it| format!("IF {it} THEN {owner}.ACC := {owner}.PRE; END_IF")));
+                lines.extend(instructions::both(&owner, get(PinRole::Load)));
+                if get(PinRole::Load).is_some_and(|it| !it.eq_ignore_ascii_case("FALSE")) {
+                    self.loaded.extend(last_name(callee));
+                }
             }
         }
         lines.extend(input(Input::Kept).map(|it| format!("{it} := DINT_TO_INT({owner}.ACC)")));
@@ -333,6 +327,7 @@ impl<'t, 'f> Writer<'t, 'f> {
                 let (start, end) = bounds(target.span);
                 let value = match (name.text.to_ascii_uppercase().as_str(), counter.narrow) {
                     _ if counter.is_empty(name.text) => format!("{owner}.ACC <= 0"),
+                    _ if self.is_done_late(callee, counter, name.text) => format!("{owner}.ACC >= {owner}.PRE"),
                     ("CV", Some(conversion)) => format!("{conversion}({owner}.ACC)"),
                     ("CV", None) => format!("{owner}.ACC"),
                     _ => format!("{owner}.DN"),
@@ -342,6 +337,12 @@ impl<'t, 'f> Writer<'t, 'f> {
             }
         }
         self.replace(span, lines.join("; "));
+    }
+
+    /// Whether an output is DN of a counter that is loaded after its instruction: DN says so one scan late.
+    fn is_done_late(&self, counter: &Expr<'_>, kind: Counter, pin: &str) -> bool {
+        let is_loaded = || last_name(counter).is_some_and(|it| self.loaded.contains(&it));
+        kind.direction == Direction::Both && kind.is_done(pin) && is_loaded()
     }
 
     /// Replaces a call; the replacements inside it are part of this one.

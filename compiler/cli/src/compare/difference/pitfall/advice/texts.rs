@@ -17,7 +17,7 @@ const fn advice(
     to: &'static [Dialect],
     text: &'static str,
 ) -> Advice {
-    Advice { name, pitfalls, from, to, forms: &[Up], text }
+    Advice { name, pitfalls, from, to, forms: &[Up], rises: None, text }
 }
 
 /// What holds between the systems whose counters are blocks.
@@ -28,7 +28,8 @@ pub const BLOCKS: &[Advice] = &[
         RISING,
         &[Cscape],
         EDGE,
-    ).of(&[Up, Down]),
+    ),
+    advice("edge", &[1, 6], RISING, &[Cscape], EDGE_DOWN).of(&[Down]),
     advice("edge", &[1, 6], &[Openplc4], &[Cscape], EDGE),
     advice(
         "every call",
@@ -163,7 +164,7 @@ pub const BLOCKS: &[Advice] = &[
 
 /// What holds on a move to or from OpenPLC from v4.1, which counts CD as it falls.
 pub const FALLING: &[Advice] = &[
-    advice("negated", &[17], RISING, &[Openplc4], "Give the input negated: `c(CD := NOT pulse, …)`.").of(&[Down]),
+    advice("negated", &[17], RISING, &[Openplc4], "Give the input negated: `c(CD := NOT pulse, …)`.").of(&[Down]).where_it(false),
     advice(
         "falling edge in every call",
         &[1, 6, 17],
@@ -171,7 +172,7 @@ pub const FALLING: &[Advice] = &[
         &[Openplc4],
         "Make a falling edge in each call: `c(CD := TRUE, LD := …); c(CD := NOT pulse, LD := …)`.",
     )
-    .of(&[Down]),
+    .of(&[Down]).where_it(false),
     advice(
         "both edges apart",
         &[17, 18],
@@ -180,7 +181,7 @@ pub const FALLING: &[Advice] = &[
         "Find both edges yourself, count where there is one alone, and give CD negated: `u(CLK := up); d(CLK := down); \
          c(CU := u.Q AND NOT d.Q, CD := NOT (d.Q AND NOT u.Q), …)`.",
     )
-    .of(&[UpDown]),
+    .of(&[UpDown]).where_it(false),
     advice(
         "falling edge",
         &[15, 17],
@@ -188,7 +189,7 @@ pub const FALLING: &[Advice] = &[
         &[Iec, Siemens],
         FELL,
     )
-    .of(&[Down]),
+    .of(&[Down]).where_it(false),
     advice(
         "falling edge",
         &[17],
@@ -196,7 +197,7 @@ pub const FALLING: &[Advice] = &[
         &[Codesys, Openplc],
         FELL,
     )
-    .of(&[Down]),
+    .of(&[Down]).where_it(false),
     advice(
         "falling edge",
         &[1, 6, 17],
@@ -204,9 +205,9 @@ pub const FALLING: &[Advice] = &[
         &[Cscape],
         FELL,
     )
-    .of(&[Down]),
-    advice("up, then down", &[15, 17, 18], &[Openplc4], &[Iec, Siemens, Codesys], UP_THEN_DOWN).of(&[UpDown]),
-    advice("up, then down", &[17, 18], &[Openplc4], &[Openplc], UP_THEN_DOWN).of(&[UpDown]),
+    .of(&[Down]).where_it(false),
+    advice("up, then down", &[15, 17, 18], &[Openplc4], &[Iec, Siemens, Codesys], UP_THEN_DOWN).of(&[UpDown]).where_it(false),
+    advice("up, then down", &[17, 18], &[Openplc4], &[Openplc], UP_THEN_DOWN).of(&[UpDown]).where_it(false),
     advice(
         "falling edge on Logix",
         &[5, 6, 17],
@@ -215,8 +216,52 @@ pub const FALLING: &[Advice] = &[
         "Count down as the input falls, above 0: `edge := before AND NOT pulse AND c.ACC > 0; before := pulse; c.CD := FALSE; \
          CTD(c, edge);`, load after the CTD: `IF load THEN c.ACC := c.PRE; END_IF`, and ask for `c.ACC <= 0` in place of Q.",
     )
-    .of(&[Down]),
-    advice("own variable for Logix", &[17], &[Logix], &[Openplc4], LOGIX_VARIABLE_DOWN).of(&[Down]),
+    .of(&[Down]).where_it(false),
+    advice("own variable for Logix", &[17], &[Logix], &[Openplc4], LOGIX_VARIABLE_DOWN).of(&[Down]).where_it(false),
+];
+
+/// And where it counts CD as it rises, as OpenPLC before v4.1 did.
+pub const RISES: &[Advice] = &[
+    advice(
+        "both edges apart, rising",
+        &[18],
+        RISING,
+        &[Openplc4],
+        "Find both edges yourself, and count where there is one alone: `u(CLK := up); d(CLK := down); \
+         c(CU := u.Q AND NOT d.Q, CD := d.Q AND NOT u.Q, …)`.",
+    )
+    .of(&[UpDown])
+    .where_it(true),
+    advice(
+        "up, then down, rising",
+        &[18],
+        &[Openplc4],
+        &[Iec, Siemens, Codesys, Openplc],
+        "Find both edges yourself; where both count in one call, down alone at the preset (here 50), and else neither: \
+         `u(CLK := up); d(CLK := down); c(CU := u.Q AND NOT d.Q AND c.CV < 50, \
+         CD := d.Q AND (NOT u.Q OR c.CV >= 50) AND c.CV > 0, …)`.",
+    )
+    .of(&[UpDown])
+    .where_it(true),
+    advice(
+        "between 0 and the preset, rising",
+        &[15],
+        &[Openplc4],
+        &[Iec, Siemens],
+        "Count down only above 0: `e(CLK := pulse); c(CD := e.Q AND c.CV > 0, …)`.",
+    )
+    .of(&[Down])
+    .where_it(true),
+    advice("edge, rising", &[1, 6], &[Openplc4], &[Cscape], EDGE_DOWN).of(&[Down]).where_it(true),
+    advice(
+        "every call, down, rising",
+        &[1, 6],
+        &[Cscape],
+        &[Openplc4],
+        "Make an edge in each call: `c(CD := FALSE, LD := …); c(CD := pulse, LD := …)`.",
+    )
+    .of(&[Down])
+    .where_it(true),
 ];
 
 /// What holds on a move to Logix.
@@ -356,6 +401,8 @@ pub const FROM_LOGIX: &[Advice] = &[
 ];
 
 const EDGE: &str = "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.";
+
+const EDGE_DOWN: &str = "Feed the counter from an R_TRIG: `e(CLK := pulse); c(CD := e.Q, …)`.";
 
 const GREAT_PRESET: &str = "Let PV be the greatest value of its type (32767 of an INT), and compare the count yourself: \
      `c.CV >= 50` in place of Q, `c.CV > 60`.";

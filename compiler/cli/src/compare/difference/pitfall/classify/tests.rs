@@ -1,6 +1,6 @@
 //! Which trap a difference is put down to.
 
-use super::super::advice::Form;
+use super::super::advice::{Counting, Form};
 use super::*;
 use staunch_frontend::Dialect;
 
@@ -89,10 +89,10 @@ fn what_the_rules_rule_out_has_a_reason() {
 fn every_pitfall_says_what_to_do() {
     for (pitfall, number) in Pitfall::all().zip(1..) {
         assert_eq!(pitfall.number(), number);
-        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape, Form::Up);
+        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape, Counting { form: Form::Up, rises: false });
         assert!(pitfall.sentence().ends_with('.') && advice.ends_with('.'), "{number}");
-        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys, Form::Up);
-        let both = pitfall.advice(Dialect::Iec, Dialect::Logix, Form::UpDown);
+        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys, Counting { form: Form::Up, rises: false });
+        let both = pitfall.advice(Dialect::Iec, Dialect::Logix, Counting { form: Form::UpDown, rises: false });
         assert!(!both.contains("CTU(") && !both.contains("CTD("), "a CTUD is no CTU: {both}");
         assert!(!reset.contains("R := ") || reset.contains("RESET := "), "{reset}");
     }
