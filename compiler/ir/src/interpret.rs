@@ -12,7 +12,7 @@ use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
 use exchange::Exchange;
 use place::Scope;
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::{BlockInfo, Context, Fault};
 
 /// Why a scan ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,6 +103,12 @@ impl<'p> Interpreter<'p> {
     /// Limits each later scan to this many statements and turns of loops; `None` for no limit.
     pub fn set_budget(&mut self, steps: Option<u64>) {
         self.budget = steps;
+    }
+
+    /// From now on the block at an offset gives what another one does, which begins as `bytes` say. Their pins are matched by
+    /// what they are for. Both are function blocks: of an instruction's structure nothing is exchanged.
+    pub fn compute_as(&mut self, offset: usize, blocks: [&'static BlockInfo; 2], bytes: &[u8]) {
+        self.exchange = Some(Exchange::new(offset, blocks, bytes));
     }
 
     /// One scan of an instance. After an early end the state stays as it was at that point.

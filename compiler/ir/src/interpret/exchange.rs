@@ -1,6 +1,5 @@
 //! One instance that is computed as another block would: what a difference between two blocks comes to in a program.
 
-use super::Interpreter;
 use staunch_runtime::{BlockInfo, Context, Direction, Pin, Value};
 
 /// The instance, and what computes it.
@@ -12,22 +11,22 @@ pub(super) struct Exchange {
     bytes: Vec<u8>,
 }
 
-impl Interpreter<'_> {
-    /// From now on the block at an offset gives what another one does, which begins as `bytes` say. Their pins are matched by
-    /// what they are for. Both are function blocks: of an instruction's structure nothing is exchanged.
-    pub fn compute_as(&mut self, offset: usize, [own, other]: [&'static BlockInfo; 2], bytes: &[u8]) {
-        self.exchange = Some(Exchange { offset, own, other, bytes: bytes.to_vec() });
+impl Exchange {
+    pub fn new(offset: usize, [own, other]: [&'static BlockInfo; 2], bytes: &[u8]) -> Self {
+        Self { offset, own, other, bytes: bytes.to_vec() }
     }
 
-    /// After a call of a block at an offset.
-    pub(super) fn exchanged(&mut self, offset: usize, cx: &Context) {
-        let Some(it) = self.exchange.as_mut().filter(|it| it.offset == offset) else { return };
-        let bytes = &mut self.memory[offset..offset + it.own.size];
-        carry([it.own, it.other], Direction::Input, bytes, &mut it.bytes);
-        if let Some(instruction) = it.other.instructions.first() {
-            (instruction.run)(&mut it.bytes, cx, true);
+    /// After a call of the block at an offset of the memory.
+    pub fn compute(&mut self, memory: &mut [u8], offset: usize, cx: &Context) {
+        if offset != self.offset {
+            return;
         }
-        carry([it.other, it.own], Direction::Output, &it.bytes, bytes);
+        let bytes = &mut memory[offset..offset + self.own.size];
+        carry([self.own, self.other], Direction::Input, bytes, &mut self.bytes);
+        if let Some(instruction) = self.other.instructions.first() {
+            (instruction.run)(&mut self.bytes, cx, true);
+        }
+        carry([self.other, self.own], Direction::Output, &self.bytes, bytes);
     }
 }
 

@@ -229,7 +229,9 @@ impl<'p> Interpreter<'p> {
             true
         };
         (instruction.run)(bytes, cx, rung);
-        self.exchanged(offset, cx);
+        if let Some(exchange) = &mut self.exchange {
+            exchange.compute(&mut self.memory, offset, cx);
+        }
         Ok(())
     }
 
