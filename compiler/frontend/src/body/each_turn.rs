@@ -3,6 +3,7 @@
 
 use crate::dialect::rules::LoopLimit;
 use crate::expr::checker::Checker;
+use crate::expr::operand::Operand;
 use crate::{Span, ast};
 use staunch_ir::{Block, Expr, For, Op, Statement, StatementKind, Step, Type, Value, alias, turns};
 
@@ -28,16 +29,12 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(span);
         let ty = head.counter.ty;
         let count = Expr::load(head.counter.clone(), at);
-        let step = match &head.step {
-            Step::Constant(step) => self.coerce(crate::expr::operand::Operand::Integer(*step), ty, span)?,
-            Step::Variable(step) => step.clone(),
-        };
         let is_up = match self.decl.dialect(span).rules().loop_limit.choice {
             LoopLimit::EachTurnUpward if !has_sign_in_text(&head, by) => Expr::bool(true, at),
             LoopLimit::Once | LoopLimit::EachTurn | LoopLimit::EachTurnUpward => match &head.step {
                 Step::Constant(step) => Expr::bool(*step > 0, at),
                 Step::Variable(step) => {
-                    let zero = self.coerce(crate::expr::operand::Operand::Integer(0), ty, span)?;
+                    let zero = self.coerce(Operand::Integer(0), ty, span)?;
                     self.apply(Op::Gt, ty, vec![step.clone(), zero], Type::BOOL, span)?
                 }
             },
@@ -58,7 +55,15 @@ impl<'s> Checker<'_, 's> {
                 Statement::new(StatementKind::If { condition: is_up, then, otherwise }, at)
             }
         };
-        let next = self.apply(Op::Add, ty, vec![count, step], ty, span)?;
+        // An unsigned counter has no negative number to add.
+        let (op, step) = match &head.step {
+            Step::Constant(step) if *step < 0 && head.range.0 == 0 => {
+                (Op::Sub, self.coerce(Operand::Integer(-step), ty, span)?)
+            }
+            Step::Constant(step) => (Op::Add, self.coerce(Operand::Integer(*step), ty, span)?),
+            Step::Variable(step) => (Op::Add, step.clone()),
+        };
+        let next = self.apply(op, ty, vec![count, step], ty, span)?;
         let continuing: Block = vec![Statement::assign(head.counter.clone(), next, at)];
         let mut body = vec![test];
         body.extend(head.body);
