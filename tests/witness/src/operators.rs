@@ -138,8 +138,15 @@ impl<'a> Machine<'a> {
         let (Some(ty), Some(other)) = (time.ty.elementary(), by.ty.elementary()) else { return unknown("a TIME") };
         let wide = if other.is_real() { Elementary::Lreal } else { Elementary::Lint };
         let operands = [in_repr(time.as_scalar()?, wide).as_scalar()?, in_repr(by.as_scalar()?, wide).as_scalar()?];
-        let scaled = self.applied(name(op), wide, &operands, at)?;
-        Ok(in_repr(scaled.as_scalar()?, ty))
+        let scaled = in_repr(self.applied(name(op), wide, &operands, at)?.as_scalar()?, ty);
+        let has_parts = ty != Elementary::Time || (op == BinaryOp::Mul && !other.is_real());
+        if has_parts || !matches!(self.declared.family, Family::Codesys | Family::S7) {
+            return Ok(scaled);
+        }
+        // A TIME of these is a number of milliseconds.
+        let nanoseconds = scaled.as_integer()?;
+        let Ok(whole) = i64::try_from(nanoseconds - nanoseconds % 1_000_000) else { return unknown("a TIME") };
+        Ok(in_repr(Scalar::I64(whole), ty))
     }
 
     /// One of the runtime's operations at a type. A comparison gives a BOOL.
