@@ -3,10 +3,14 @@
 
 pub mod escape;
 mod fixed;
+mod objects;
 mod table;
+mod targets;
 
 pub use fixed::fixed;
-pub use table::{objects, table, view, wanted};
+pub use objects::objects;
+pub use table::{table, view, wanted};
+pub use targets::{Step, Target, Targets};
 
 use crate::{
     Argument, BlockId, Expr, ExprKind, FieldId, Location, ParamId, Place, Program, Projection, Root, Routine,
@@ -47,6 +51,20 @@ pub fn followed<'a>(program: &Program, place: &'a Place) -> Option<Followed<'a>>
     Some(Followed { pointer, target, way, ty: place.ty, pin: None, at })
 }
 
+impl Followed<'_> {
+    /// How many steps of the way lead to an element of an array that is pointed to: what is there is looked up as
+    /// what it is, since the array is most often declared larger than the variable.
+    pub fn subscripts(&self) -> usize {
+        let is_subscript = |it: &&Projection| matches!(it, Projection::Index { .. });
+        self.way.iter().take_while(is_subscript).count()
+    }
+
+    /// The type of what is there.
+    pub fn looked_up(&self, program: &Program) -> Option<Type> {
+        self.way[..self.subscripts()].iter().try_fold(self.target, |ty, it| program.part(ty, it))
+    }
+}
+
 /// The variables whose addresses are taken: fields of the globals and of states.
 pub fn addressable(program: &Program) -> BTreeSet<(StructId, FieldId)> {
     let found = Finder::search(program);
@@ -65,6 +83,24 @@ pub fn reached(program: &Program) -> BTreeSet<(StructId, FieldId)> {
         all.extend(holders.map(|(at, _)| (state, FieldId::next(at))));
     }
     all
+}
+
+/// The types of what references are followed to, each once.
+pub fn looked_up(program: &Program) -> Vec<Type> {
+    let mut found: Vec<Type> = Vec::new();
+    let mut see = |place: &Place| {
+        let mut pointer = None;
+        while let Some(it) = followed(program, pointer.as_ref().unwrap_or(place)) {
+            let is_known = |ty: &Type| found.iter().any(|it| wanted(program, *it) == wanted(program, *ty));
+            found.extend(it.looked_up(program).filter(|it| !is_known(it)));
+            let next = it.pointer;
+            pointer = Some(next);
+        }
+    };
+    for routine in &program.routines {
+        visit::statements(&routine.body, &mut |statement| visit::accesses(statement, &mut |place, _| see(place)));
+    }
+    found
 }
 
 /// For each routine, the locals whose addresses are taken, by it or by what it passes them to.

@@ -89,8 +89,8 @@ impl Map<'_> {
         self.arrays()?;
         self.structs()?;
         self.blocks()?;
-        for (offset, size) in reference::objects(self.program, self.layout) {
-            writeln!(self.text, "object\t{offset}\t{size}")?;
+        for it in reference::objects(self.program, self.layout) {
+            writeln!(self.text, "object\t{}\t{}", it.offset, it.size)?;
         }
         writeln!(self.text, "globals\tstruct:{}\t{}", self.program.globals.0, machine.globals)?;
         self.bound()?;

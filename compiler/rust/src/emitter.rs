@@ -2,14 +2,16 @@
 
 use std::collections::BTreeSet;
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 use staunch_ir::effects::{Effects, Rules, effects};
 use staunch_ir::layout::Layout;
+use staunch_ir::reference::Targets;
 use staunch_ir::{FieldId, Location, Place, Program, Root, Routine, StructId, Type};
 
 use crate::alias::{Origin, element};
 use crate::literal::{number, rust_path};
+use crate::look_up::{LookUp, look_ups};
 use crate::names::{Names, ident};
 use crate::text;
 
@@ -22,6 +24,10 @@ pub struct Emitter<'p> {
     pub names: Names,
     pub effects: Vec<Effects>,
     pub layout: Layout,
+    /// Where references lead.
+    pub targets: Targets<'p>,
+    /// The functions that look there, by the types that they look for.
+    pub look_ups: Vec<LookUp>,
     /// What is no part of the state.
     pub constants: Constants,
     /// The program has references: what several paths may reach lies in cells, and each routine is handed
@@ -37,7 +43,10 @@ impl<'p> Emitter<'p> {
         let effects = effects(program, &Rules { scans_take_all: true, ..Rules::PLAIN });
         let shared = !program.references.is_empty();
         let (constants, handles_faults) = (Constants::new(), program.handles_faults());
-        Self { program, origins, names, effects, layout: Layout::new(program), constants, shared, handles_faults }
+        let layout = Layout::new(program);
+        let targets = Targets::new(program, &layout);
+        let look_ups = look_ups(program, &names, &targets);
+        Self { program, origins, names, effects, layout, targets, look_ups, constants, shared, handles_faults }
     }
 
     pub fn ty(&self, ty: Type) -> TokenStream {
@@ -113,6 +122,20 @@ impl<'p> Emitter<'p> {
             ty = element(self.program, ty, projection);
         }
         types
+    }
+
+    /// The name of a structure's field or a block's pin.
+    pub fn field_name(&self, ty: Type, field: FieldId) -> Ident {
+        match ty {
+            Type::Struct(id) => self.names.field(id, field).clone(),
+            Type::Block(id) => ident(id.info().pins[field.index()].field),
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::String(_)
+            | Type::Enum(_)
+            | Type::Array(_) => unreachable!("verified IR: only structures and blocks have fields"),
+        }
     }
 
     /// `parking_garage.st:12`.

@@ -20,7 +20,7 @@ impl Function<'_> {
             ExprKind::Text(text) => self.emitter.constant(expr.ty, &staunch_ir::Const::Text(text.clone())),
             ExprKind::Aggregate(value) => self.emitter.constant(expr.ty, value),
             ExprKind::Load(place) => self.load(place),
-            ExprKind::AddressOf(place) => Code::postfix(self.reference_to(place)),
+            ExprKind::AddressOf(place) => self.reference_to(place),
             ExprKind::Apply(op, operands) => self.apply(expr, *op, operands),
             ExprKind::ApplyText(op, operands) => self.apply_text(expr, *op, operands, false),
             ExprKind::Convert(how, value) => self.convert(*how, expr.ty, value),

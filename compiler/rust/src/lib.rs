@@ -9,6 +9,7 @@ mod alias;
 mod precedence;
 
 mod literal;
+mod look_up;
 mod text;
 
 mod declare;

@@ -6,7 +6,6 @@ use staunch_ir::{Expr, FieldId, Location, Place, Projection, Root, Type, Value};
 
 use crate::function::Function;
 use crate::literal::{number, signed};
-use crate::names::ident;
 use crate::precedence::{Code, Level};
 use staunch_ir::faults;
 
@@ -53,18 +52,7 @@ impl Function<'_> {
                         tokens = constant;
                         continue;
                     }
-                    let name = match ty {
-                        Type::Struct(id) => self.emitter.names.field(id, *field).clone(),
-                        Type::Block(id) => ident(id.info().pins[field.index()].field),
-                        Type::Elementary(_)
-                        | Type::Reference(_)
-                        | Type::Subrange(..)
-                        | Type::String(_)
-                        | Type::Enum(_)
-                        | Type::Array(_) => {
-                            unreachable!("verified IR: only structures and blocks have fields")
-                        }
-                    };
+                    let name = self.emitter.field_name(ty, *field);
                     // A block lies in its cell as a whole.
                     let read = (self.emitter.shared && matches!(ty, Type::Block(_))).then(|| quote!(.get()));
                     quote!(#tokens #read.#name)

@@ -1,7 +1,7 @@
 //! Programs with references: storage that several paths may reach lies in cells, each routine is handed the
 //! whole machine, and accesses through references are checked by the table of objects.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 use staunch_ir::reference::{Followed, followed, table, view, wanted};
 use staunch_ir::{ClassId, Place, Projection, Root, Type};
@@ -11,7 +11,7 @@ use crate::emitter::Emitter;
 use crate::function::Function;
 use crate::literal::number;
 use crate::names::ident;
-use crate::precedence::Code;
+use crate::precedence::{Code, Level};
 use crate::text;
 
 impl Emitter<'_> {
@@ -25,6 +25,7 @@ impl Emitter<'_> {
         let docs = program.instances.iter().map(|it| format!(" PROGRAM `{}`.", it.name));
         let starts = program.instances.iter().map(|it| state(it.program));
         let words = table(program, &self.layout).into_iter().map(Literal::u32_unsuffixed);
+        let look_ups = self.look_ups.iter().map(|it| self.look_up(it));
         quote! {
             /// The objects that references may name, and the types in them.
             const REFERENCES: reference::Table<'static> = reference::Table::new(&[#(#words),*]);
@@ -40,6 +41,7 @@ impl Emitter<'_> {
             impl Machine {
                 /// With initial values.
                 pub const fn new() -> Self { Self { globals: #globals::new(), #(#names: #starts::new()),* } }
+                #(#look_ups)*
             }
             impl Default for Machine { fn default() -> Self { Self::new() } }
         }
@@ -58,6 +60,11 @@ impl Emitter<'_> {
                 quote!(reference::View::Exact(#id))
             }
         }
+    }
+
+    /// Whether a value of the type is seen as nothing but what it is.
+    fn is_exact(&self, ty: Type) -> bool {
+        matches!(view(self.program, ty), View::Exact(_))
     }
 
     fn wanted(&self, ty: Type) -> TokenStream {
@@ -99,7 +106,7 @@ impl Function<'_> {
     }
 
     /// The block that a pin is of, and the pin's name.
-    pub fn block_of_pin(&self, place: &Place) -> Option<(Place, proc_macro2::Ident)> {
+    pub fn block_of_pin(&self, place: &Place) -> Option<(Place, Ident)> {
         let types = self.emitter.types_along(self.routine, place);
         let (Some(Type::Block(id)), Some(Projection::Field(pin))) = (types.last(), place.projections.last()) else {
             return None;
@@ -108,17 +115,43 @@ impl Function<'_> {
         Some((block, ident(id.info().pins[pin.index()].field)))
     }
 
-    /// The reference and the distance from where it points, as arguments.
-    fn way(&self, it: &Followed<'_>) -> (TokenStream, TokenStream) {
-        let reference = self.load(&it.pointer).tokens;
-        let (mut fixed, mut ty, mut steps) = (0, it.target, Vec::new());
-        for projection in it.way {
+    /// How a reference is followed.
+    fn way(&self, it: &Followed<'_>) -> Way {
+        let mut way = Way { reference: self.load(&it.pointer).tokens, ..Way::default() };
+        let is_found_by_steps = |it: &Projection| !matches!(it, Projection::Field(_));
+        if it.pointer.projections.iter().any(is_found_by_steps) {
+            way.reference = way.bind(self.made_up("reference", 0), &way.reference.clone());
+        }
+        let (to_variable, inside) = it.way.split_at(it.subscripts());
+        let (mut near, mut further) = (Distance::default(), Distance::default());
+        let ty = self.steps(&mut way, it.target, to_variable, &mut near);
+        way.inside = TokenStream::new();
+        let _ = self.steps(&mut way, ty, inside, &mut further);
+        let (reference, distance) = (&way.reference, near.tokens());
+        way.place = self.emitter.look_up_of(ty).map(|name| quote!(machine.#name(#reference, #distance)));
+        way.further = further.tokens();
+        way.distance = near.and(further).tokens();
+        way
+    }
+
+    /// Steps from a variable to a part of it, whose type is returned.
+    fn steps(&self, way: &mut Way, ty: Type, steps: &[Projection], distance: &mut Distance) -> Type {
+        let mut ty = ty;
+        for projection in steps {
             match (projection, ty) {
-                (Projection::Field(field), _) => fixed += self.emitter.layout.offset(ty, *field),
+                (Projection::Field(field), _) => {
+                    distance.fixed += self.emitter.layout.offset(ty, *field);
+                    let name = self.emitter.field_name(ty, *field);
+                    way.inside.extend(quote!(.#name));
+                }
                 (Projection::Index { index, at }, Type::Array(id)) => {
                     let stride = number(self.emitter.layout.stride(id));
-                    let position = self.position(index, ty, *at);
-                    steps.push(quote!((#position) as u64 * #stride));
+                    let mut position = self.position(index, ty, *at);
+                    if index.as_const().is_none() {
+                        position = way.bind(self.made_up("position", way.before.len()), &position);
+                    }
+                    distance.steps.push(quote!(#position as u64 * #stride));
+                    way.inside.extend(quote!([#position]));
                 }
                 (Projection::Index { .. } | Projection::Deref { .. }, _) => {
                     unreachable!("verified IR: the way from a reference")
@@ -126,10 +159,7 @@ impl Function<'_> {
             }
             ty = crate::alias::element(self.emitter.program, ty, projection);
         }
-        let fixed = (fixed > 0 || steps.is_empty()).then(|| number(fixed));
-        let fixed = fixed.map(|it| quote!(#it));
-        let all = fixed.into_iter().chain(steps);
-        (reference, quote!(#(#all)+*))
+        ty
     }
 
     /// How a scalar or string behind a reference is read; `None` for what is looked at whole.
@@ -137,22 +167,31 @@ impl Function<'_> {
         let program = self.emitter.program;
         let it = followed(program, place).filter(|it| it.pin.is_none())?;
         let at = self.emitter.at(it.at);
+        let way = self.way(&it);
+        let (reference, distance) = (&way.reference, &way.distance);
         if let Type::String(ty) = place.ty {
-            let (reference, distance) = self.way(&it);
             let (string, capacity) =
                 (ident(if ty.wide { "wide_string" } else { "string" }), number(ty.capacity.into()));
-            return Some(Code::postfix(quote!(REFERENCES.#string::<#capacity>(machine, #reference, #distance) #at?)));
+            return Some(way.after(quote!(REFERENCES.#string::<#capacity>(machine, #reference, #distance) #at?)));
         }
         let repr = ident(program.repr(place.ty)?.rust_name());
-        let ((reference, distance), view) = (self.way(&it), self.emitter.seen_as(place.ty));
-        let value = quote!(REFERENCES.load::<#repr>(machine, #reference, #distance, #view) #at?);
-        Some(Code::postfix(match place.ty {
+        let (view, is_exact) = (self.emitter.seen_as(place.ty), self.emitter.is_exact(place.ty));
+        let field = matches!(place.ty, Type::Enum(_)).then(|| quote!(.0));
+        let (further, inside) = (&way.further, &way.inside);
+        let value = match &way.place {
+            Some(found) if is_exact => quote!(#found.get_as(#view, #further, |it| it #inside.get() #field) #at?),
+            Some(found) if inside.is_empty() => quote!(#found.get(#further, Cell::get) #at?),
+            Some(found) => quote!(#found.get(#further, |it| it #inside.get()) #at?),
+            None => quote!(REFERENCES.load::<#repr>(machine, #reference, #distance, #view) #at?),
+        };
+        let value = way.after(value);
+        Some(match place.ty {
             Type::Enum(id) => {
-                let name = self.emitter.names.enumeration(id);
-                quote!(#name(#value))
+                let (name, value) = (self.emitter.names.enumeration(id), value.tokens);
+                Code::postfix(quote!(#name(#value)))
             }
             _ => value,
-        }))
+        })
     }
 
     /// `place := value;` through a reference; `None` for what is looked at whole.
@@ -160,29 +199,46 @@ impl Function<'_> {
         let program = self.emitter.program;
         let it = followed(program, place).filter(|it| it.pin.is_none())?;
         let at = self.emitter.at(it.at);
+        let way = self.way(&it);
+        let (reference, distance) = (&way.reference, &way.distance);
         if matches!(place.ty, Type::String(_)) {
-            let (reference, distance) = self.way(&it);
+            let name = self.made_up("value", 0);
             let (ty, as_units) = (self.emitter.ty(place.ty), text::as_units(place.ty));
-            return Some(quote! {
-                {
-                    let (reference, distance) = (#reference, #distance);
-                    let value: #ty = #value;
-                    REFERENCES.store_text(machine, reference, distance, value.#as_units()) #at?;
-                }
-            });
+            let store = quote!(REFERENCES.store_text(machine, #reference, #distance, #name.#as_units()) #at?;);
+            return Some(way.statements(quote!({ let #name: #ty = #value; #store })));
         }
         let repr = ident(program.repr(place.ty)?.rust_name());
-        let ((reference, distance), view) = (self.way(&it), self.emitter.seen_as(place.ty));
-        let value = if matches!(place.ty, Type::Enum(_)) { quote!((#value).0) } else { value.clone() };
-        Some(quote!(REFERENCES.store::<#repr>(machine, #reference, #distance, #view, #value) #at?;))
+        let (view, is_exact) = (self.emitter.seen_as(place.ty), self.emitter.is_exact(place.ty));
+        let (further, inside) = (&way.further, &way.inside);
+        let (value, new) = match place.ty {
+            Type::Enum(id) => {
+                let name = self.emitter.names.enumeration(id);
+                (quote!((#value).0), quote!(#name(value)))
+            }
+            _ => (value.clone(), quote!(value)),
+        };
+        Some(way.statements(match &way.place {
+            Some(found) if is_exact => {
+                quote!(#found.set_as(#view, #further, |it, value| it #inside.set(#new), #value) #at?;)
+            }
+            Some(found) => quote!(#found.set(#further, |it| &it #inside, #value) #at?;),
+            None => quote!(REFERENCES.store::<#repr>(machine, #reference, #distance, #view, #value) #at?;),
+        }))
     }
 
     /// The variable behind a reference, as `&T`.
     pub fn found(&self, place: &Place) -> TokenStream {
         let it = followed(self.emitter.program, place).expect("a place that leads through a reference");
-        let (reference, distance) = self.way(&it);
+        let way = self.way(&it);
+        let (reference, distance) = (&way.reference, &way.distance);
         let (ty, wanted, at) = (self.emitter.stored(it.ty), self.emitter.wanted(it.ty), self.emitter.at(it.at));
-        let found = quote!(REFERENCES.variable::<#ty>(machine, #reference, #distance, #wanted) #at?);
+        let (further, inside) = (&way.further, &way.inside);
+        let found = match &way.place {
+            Some(found) if inside.is_empty() => quote!(#found.borrow(#wanted, #further, |it| it) #at?),
+            Some(found) => quote!(#found.borrow(#wanted, #further, |it| &it #inside) #at?),
+            None => quote!(REFERENCES.variable::<#ty>(machine, #reference, #distance, #wanted) #at?),
+        };
+        let found = way.after(found).at_least(Level::Postfix);
         match it.pin {
             Some((block, pin)) => {
                 let pin = ident(block.info().pins[pin.index()].field);
@@ -193,14 +249,23 @@ impl Function<'_> {
     }
 
     /// `ADR(place)`
-    pub fn reference_to(&self, place: &Place) -> TokenStream {
+    pub fn reference_to(&self, place: &Place) -> Code {
         if let Some(it) = followed(self.emitter.program, place) {
-            let (reference, distance) = self.way(&it);
-            return quote!(ops::advance(#reference, (#distance) as i64));
+            let way = self.way(&it);
+            let (reference, distance) = (&way.reference, &way.distance);
+            return way.after(quote!(ops::advance(#reference, (#distance) as i64)));
         }
-        let size = number(self.emitter.layout.size(place.ty));
         let variable = self.borrowed(place);
-        quote!(REFERENCES.address(reference::offset(machine, #variable), #size))
+        Code::postfix(match self.emitter.targets.object_of(self.routine, place) {
+            Some(object) => {
+                let object = number(object.into());
+                quote!(reference::to(#object, machine, #variable))
+            }
+            None => {
+                let size = number(self.emitter.layout.size(place.ty));
+                quote!(REFERENCES.address(reference::offset(machine, #variable), #size))
+            }
+        })
     }
 
     /// `place := value;` where storage is shared.
@@ -226,6 +291,58 @@ impl Function<'_> {
     /// Whether the place's text is a reference: what is found through one is, a member of it too.
     pub fn is_reference(&self, place: &Place) -> bool {
         self.is_whole_param(place) || followed(self.emitter.program, place).is_some_and(|it| it.pin.is_none())
+    }
+}
+
+/// How a reference is followed to what lies behind it.
+#[derive(Default)]
+struct Way {
+    /// Statements that come before: what is found by a search or a check, found once.
+    before: Vec<TokenStream>,
+    reference: TokenStream,
+    /// From where the reference points, in bytes.
+    distance: TokenStream,
+    /// The call that looks for a variable where one is expected, and the way on from that, also in bytes.
+    place: Option<TokenStream>,
+    inside: TokenStream,
+    further: TokenStream,
+}
+
+impl Way {
+    fn bind(&mut self, name: Ident, value: &TokenStream) -> TokenStream {
+        self.before.push(quote!(let #name = #value;));
+        quote!(#name)
+    }
+
+    fn after(&self, value: TokenStream) -> Code {
+        let before = &self.before;
+        if before.is_empty() { Code::postfix(value) } else { Code::new(quote!({ #(#before)* #value }), Level::Block) }
+    }
+
+    fn statements(&self, last: TokenStream) -> TokenStream {
+        let before = &self.before;
+        if before.is_empty() { last } else { quote!({ #(#before)* #last }) }
+    }
+}
+
+/// Bytes from one place to another: what is known, and what is computed.
+#[derive(Default)]
+struct Distance {
+    fixed: u64,
+    steps: Vec<TokenStream>,
+}
+
+impl Distance {
+    fn and(mut self, other: Self) -> Self {
+        self.fixed += other.fixed;
+        self.steps.extend(other.steps);
+        self
+    }
+
+    fn tokens(&self) -> TokenStream {
+        let fixed = (self.fixed > 0 || self.steps.is_empty()).then(|| number(self.fixed));
+        let all = fixed.iter().map(|it| quote!(#it)).chain(self.steps.iter().cloned());
+        quote!(#(#all)+*)
     }
 }
 

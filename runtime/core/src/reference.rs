@@ -13,10 +13,12 @@
 //!
 //! An object in a pool has a mark, which says whether it is in use: what leads to one that was deleted is a fault.
 
+mod found;
 mod memory;
 mod table;
 
 pub use crate::{shared, shared_enumeration};
+pub use found::{Found, behind, element, object, part, to, whole};
 pub use memory::{Memory, Raw, Shared, find, inside, offset, this};
 pub use table::{Part, Table, View, Wanted, encode};
 
@@ -58,7 +60,7 @@ impl<'t> Table<'t> {
     }
 
     /// The value of type `T` at `distance` bytes from where the reference points.
-    #[inline]
+    #[cold]
     pub fn load<T: Scalar>(
         &self,
         memory: &(impl Memory + ?Sized),
@@ -117,7 +119,7 @@ impl<'t> Table<'t> {
         Ok(())
     }
 
-    #[inline]
+    #[cold]
     pub fn store<T: Scalar>(
         &self,
         memory: &(impl Memory + ?Sized),
@@ -232,6 +234,7 @@ impl<'t> Table<'t> {
     }
 
     /// The variable of exactly this type that the reference leads to.
+    #[cold]
     pub fn variable<'m, T: core::any::Any>(
         &self,
         machine: &'m impl Shared,

@@ -1,11 +1,11 @@
 //! The table of objects, as the runtime reads it.
 
-use super::addressable;
+use super::objects::{Object, flat, objects, roots, word};
 use crate::layout::Layout;
-use crate::{ArrayId, FieldId, Program, StructId, Type};
+use crate::{ArrayId, FieldId, Program, Type};
 use staunch_runtime::Repr;
 use staunch_runtime::reference::{View, Wanted, encode};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::HashMap;
 
 /// How an access sees a value of the type: what it is a value of must be a scalar or string.
 pub fn view(program: &Program, ty: Type) -> View {
@@ -54,89 +54,28 @@ pub fn table(program: &Program, layout: &Layout) -> Vec<u32> {
     if program.references.is_empty() {
         return Vec::new();
     }
+    let objects = objects(program, layout);
     let mut builder = Builder::new(program, layout);
     let root = builder.state();
-    let types: Vec<_> = builder.objects.values().copied().collect();
-    let of_objects: Vec<_> = types.into_iter().map(|it| builder.node(it)).collect();
-    builder.words(root, &of_objects)
-}
-
-/// The objects that references may name, by their numbers from 1: their offsets in the state and their sizes.
-pub fn objects(program: &Program, layout: &Layout) -> Vec<(u64, u64)> {
-    let objects = Builder::new(program, layout).objects;
-    objects.into_keys().map(|(offset, size, ..)| (offset, size.0)).collect()
+    let nodes: Vec<_> = objects.iter().map(|it| builder.node(it.ty)).collect();
+    builder.words(root, &objects, &nodes)
 }
 
 struct Builder<'p> {
     program: &'p Program,
     layout: &'p Layout,
-    /// Offset, and size from the largest; whether all of it is numbers; its mark. The type is that of the outermost of
-    /// the variables that are there.
-    objects: BTreeMap<(u64, core::cmp::Reverse<u64>, bool, u32), Type>,
     nodes: Vec<Vec<u32>>,
     known: HashMap<Type, usize>,
 }
 
 impl<'p> Builder<'p> {
     fn new(program: &'p Program, layout: &'p Layout) -> Self {
-        let mut builder = Self { program, layout, objects: BTreeMap::new(), nodes: Vec::new(), known: HashMap::new() };
-        let variables = addressable(program);
-        if !variables.is_empty() {
-            for (offset, id) in builder.roots() {
-                builder.find_objects(offset, Type::Struct(id), 0, &variables);
-            }
-        }
-        builder
-    }
-
-    /// The structures that the state consists of.
-    fn roots(&self) -> Vec<(u64, StructId)> {
-        let instances = self.program.instances.iter().zip(&self.layout.machine.instances);
-        let instances = instances.map(|(it, offset)| (*offset, self.program.class(it.program).state));
-        [(self.layout.machine.globals, self.program.globals)].into_iter().chain(instances).collect()
-    }
-
-    /// `mark` is that of the pool's place around, or 0.
-    fn find_objects(&mut self, offset: u64, ty: Type, mark: u32, variables: &BTreeSet<(StructId, FieldId)>) {
-        match ty {
-            Type::Struct(id) => {
-                let mark = if self.program.places.contains(&id) { word(offset) + 1 } else { mark };
-                for (at, field) in self.program.structure(id).fields.iter().enumerate() {
-                    let member = FieldId::next(at);
-                    let start = offset + self.layout.field(id, member);
-                    if variables.contains(&(id, member)) {
-                        // Compiled code looks at no mark, so it asks the runtime for what has one.
-                        let plain = mark == 0 && self.flat(field.ty).is_some_and(|it| it != Repr::Bool);
-                        let size = core::cmp::Reverse(self.layout.size(field.ty));
-                        self.objects.entry((start, size, plain, mark)).or_insert(field.ty);
-                    }
-                    self.find_objects(start, field.ty, mark, variables);
-                }
-            }
-            Type::Array(id) if self.has_states(self.program.array(id).element) => {
-                let array = self.program.array(id);
-                for position in 0..array.len() {
-                    self.find_objects(offset + position * self.layout.stride(id), array.element, mark, variables);
-                }
-            }
-            Type::Array(_)
-            | Type::Elementary(_)
-            | Type::Subrange(..)
-            | Type::Reference(_)
-            | Type::String(_)
-            | Type::Enum(_)
-            | Type::Block(_) => {}
-        }
-    }
-
-    fn has_states(&self, ty: Type) -> bool {
-        let is_state = |id| self.program.places.contains(&id) || self.program.class_of_state(id).is_some();
-        self.program.instance_in(ty, &is_state).is_some()
+        Self { program, layout, nodes: Vec::new(), known: HashMap::new() }
     }
 
     /// The node of the whole state.
     fn state(&mut self) -> usize {
-        let members: Vec<_> = self.roots().iter().map(|(offset, id)| (*offset, Type::Struct(*id))).collect();
+        let members: Vec<_> = roots(self.program, self.layout).into_iter().map(|(_, offset, id)| (offset, Type::Struct(id))).collect();
         self.structure(self.layout.machine.size, u32::MAX, &members)
     }
 
@@ -182,28 +121,14 @@ impl<'p> Builder<'p> {
 
     fn array(&mut self, id: ArrayId, ty: Type, size: u32) -> usize {
         let element = self.node(self.program.array(id).element);
-        let (kind, repr) = self.flat(ty).map_or((u32::MAX, 0), |repr| (numbers(repr), encode::repr(repr)));
+        let (kind, repr) = flat(self.program, ty).map_or((u32::MAX, 0), |repr| (numbers(repr), encode::repr(repr)));
         let stride = word(self.layout.stride(id));
         self.push(vec![encode::ARRAY, size, exact(self.program, ty), stride, position(element), kind, repr])
     }
 
-    /// The repr of the numbers that an array consists of, through all its dimensions.
-    fn flat(&self, ty: Type) -> Option<Repr> {
-        match ty {
-            Type::Array(id) => self.flat(self.program.array(id).element),
-            Type::Elementary(it) => Some(it.repr()),
-            Type::Subrange(..)
-            | Type::Reference(_)
-            | Type::String(_)
-            | Type::Enum(_)
-            | Type::Struct(_)
-            | Type::Block(_) => None,
-        }
-    }
-
     /// Nodes are named by the positions of their words.
-    fn words(self, root: usize, of_objects: &[usize]) -> Vec<u32> {
-        let start = encode::HEAD + self.objects.len() * encode::OBJECT;
+    fn words(self, root: usize, objects: &[Object], of_objects: &[usize]) -> Vec<u32> {
+        let start = encode::HEAD + objects.len() * encode::OBJECT;
         let mut positions = Vec::with_capacity(self.nodes.len());
         let mut end = start;
         for node in &self.nodes {
@@ -211,10 +136,10 @@ impl<'p> Builder<'p> {
             end += node.len();
         }
         let at = |node: u32| positions[usize::try_from(node).expect("a u32 fits a usize")];
-        let mut words = vec![position(self.objects.len()), positions[root], position(end)];
-        words.extend(self.objects.keys().zip(of_objects).flat_map(|((offset, size, plain, mark), node)| {
-            let size = word(size.0);
-            [word(*offset), size, if *plain { size } else { 0 }, *mark, positions[*node]]
+        let mut words = vec![position(objects.len()), positions[root], position(end)];
+        words.extend(objects.iter().zip(of_objects).flat_map(|(it, node)| {
+            let size = word(it.size);
+            [word(it.offset), size, if it.is_plain { size } else { 0 }, it.mark, positions[*node]]
         }));
         for mut node in self.nodes {
             match node[0] {
@@ -230,8 +155,4 @@ impl<'p> Builder<'p> {
 
 fn numbers(repr: Repr) -> u32 {
     if repr == Repr::Bool { encode::TRUTHS } else { encode::NUMBERS }
-}
-
-fn word(size: u64) -> u32 {
-    u32::try_from(size).expect("sizes are below the limit of 1 GiB")
 }

@@ -134,7 +134,7 @@ impl<'t> Table<'t> {
 
     /// How many bytes the state has.
     pub fn state_size(&self) -> usize {
-        self.whole().map_or(0, |it| it.node.size)
+        self.state().map_or(0, |it| it.node.size)
     }
 
     fn word(&self, at: usize) -> u32 {
@@ -241,7 +241,7 @@ impl<'t> Table<'t> {
 
     /// Whether the byte is a number's.
     pub(super) fn is_number(&self, offset: usize) -> bool {
-        let leaf = self.whole().and_then(|it| self.leaf(it, offset));
+        let leaf = self.state().and_then(|it| self.leaf(it, offset));
         leaf.is_some_and(|it| it.node.kind == encode::NUMBERS)
     }
 
@@ -282,7 +282,7 @@ impl<'t> Table<'t> {
             return Err(FaultKind::OutsideObject);
         }
         // What is not within the object may be around it: the structure of which it is the first member.
-        if self.finds(self.whole(), offset, wanted) { Ok(offset) } else { Err(FaultKind::ForbiddenView) }
+        if self.finds(self.state(), offset, wanted) { Ok(offset) } else { Err(FaultKind::ForbiddenView) }
     }
 
     /// Whether a variable of this type lies at an offset of what is `found`.
@@ -328,7 +328,7 @@ impl<'t> Table<'t> {
         }
     }
 
-    fn whole(&self) -> Option<Found> {
+    fn state(&self) -> Option<Found> {
         self.node(self.word(1) as usize, 0)
     }
 

@@ -1,0 +1,116 @@
+//! Functions that look for what a reference leads to where it is expected: at the variables of its type whose
+//! addresses are taken. What is elsewhere, or looked at as something else, the table of objects decides.
+
+use proc_macro2::{Ident, TokenStream};
+use quote::quote;
+use staunch_ir::reference::{Step, Target, Targets, looked_up, wanted};
+use staunch_ir::{Program, Type};
+
+use crate::emitter::Emitter;
+use crate::literal::number;
+use crate::names::{Names, Scope, snake};
+
+/// A function of the whole state.
+pub struct LookUp {
+    /// What it looks for.
+    pub ty: Type,
+    pub name: Ident,
+    targets: Vec<Target>,
+}
+
+/// One for each type that is looked for and that references may lead to.
+pub fn look_ups(program: &Program, names: &Names, targets: &Targets<'_>) -> Vec<LookUp> {
+    let mut scope = Scope::with(&["new", "default"]);
+    let found = looked_up(program).into_iter().map(|ty| (ty, targets.lead_to(ty)));
+    let found = found.filter(|(_, targets)| !targets.is_empty());
+    found.map(|(ty, targets)| LookUp { ty, name: scope.claim(&name(program, names, ty)), targets }).collect()
+}
+
+fn name(program: &Program, names: &Names, ty: Type) -> String {
+    let of = match ty {
+        Type::Elementary(it) => it.name().to_lowercase(),
+        Type::Subrange(base, _) => format!("range_of_{}", base.name().to_lowercase()),
+        Type::Reference(_) => "reference".to_owned(),
+        Type::String(it) => format!("{}_{}", if it.wide { "wstring" } else { "string" }, it.capacity),
+        Type::Enum(id) => snake(&names.enumeration(id).to_string()),
+        Type::Array(id) => format!("{}s", name(program, names, program.array(id).element).trim_end_matches("_at")),
+        Type::Struct(id) => snake(&names.structure(id).to_string()),
+        Type::Block(id) => snake(id.info().name),
+    };
+    format!("{of}_at")
+}
+
+impl Emitter<'_> {
+    pub fn look_up_of(&self, ty: Type) -> Option<&Ident> {
+        let ty = wanted(self.program, ty);
+        self.look_ups.iter().find(|it| wanted(self.program, it.ty) == ty).map(|it| &it.name)
+    }
+
+    pub fn look_up(&self, it: &LookUp) -> TokenStream {
+        let (name, ty) = (&it.name, self.stored(it.ty));
+        let doc = format!(" The {} that a reference leads to, if it is where one is expected.", self.program.type_name(it.ty));
+        let arms = it.targets.chunk_by(|a, b| a.object == b.object).map(|targets| self.arm(targets));
+        quote! {
+            #[doc = #doc]
+            #[inline]
+            fn #name(&self, reference: u64, distance: u64) -> reference::Found<'_, #ty, Self> {
+                let behind = |offset| reference::behind(reference, distance, offset);
+                let variable = match reference::object(reference) {
+                    #(#arms,)*
+                    _ => None,
+                };
+                REFERENCES.found(variable, self, reference, distance)
+            }
+        }
+    }
+
+    /// What is found in one object.
+    fn arm(&self, targets: &[Target]) -> TokenStream {
+        let object = targets.first().map(|it| number(it.object.into()));
+        let mut places = targets.iter().map(|it| self.place_of(it));
+        let first = places.next();
+        quote!(#object => #first #(.or_else(|| #places))*)
+    }
+
+    fn place_of(&self, target: &Target) -> TokenStream {
+        let offset = number(target.offset);
+        let (root, state) = match target.instance {
+            None => (quote!(self.globals), self.program.globals),
+            Some(at) => {
+                let name = self.names.instance(at);
+                (quote!(self.#name), self.program.class(self.program.instances[at].program).state)
+            }
+        };
+        self.within(root, Type::Struct(state), &target.way, &quote!(behind(#offset)))
+    }
+
+    /// What the way leads to from a variable, where the position in it is `at`.
+    fn within(&self, root: TokenStream, ty: Type, way: &[Step], at: &TokenStream) -> TokenStream {
+        let (mut path, mut ty) = (root, ty);
+        for (done, step) in way.iter().enumerate() {
+            match (step, ty) {
+                (Step::Field(field), _) => {
+                    let name = self.field_name(ty, *field);
+                    path = quote!(#path.#name);
+                    ty = self.program.member(ty, *field).expect("a way through the type");
+                }
+                (Step::Element(position), Type::Array(id)) => {
+                    let position = number(*position);
+                    path = quote!(#path[#position]);
+                    ty = self.program.array(id).element;
+                }
+                (Step::Each { .. }, Type::Array(id)) => {
+                    let rest = &way[done + 1..];
+                    let path = if done == 0 { path } else { quote!(&#path) };
+                    if rest.is_empty() {
+                        return quote!(reference::element(#path, #at));
+                    }
+                    let inner = self.within(quote!(it), self.program.array(id).element, rest, &quote!(at));
+                    return quote!(reference::part(#path, #at).and_then(|(it, at)| #inner));
+                }
+                (Step::Element(_) | Step::Each { .. }, _) => unreachable!("a way through the type"),
+            }
+        }
+        quote!(reference::whole(&#path, #at))
+    }
+}

@@ -1,0 +1,133 @@
+//! What a reference leads to, looked for where it is expected: emitted Rust compares with the few places where a
+//! variable of the type is, and asks the table of objects for all else.
+
+use super::{ORIGIN, Reference, Shared, Table, View, Wanted, offset};
+use crate::{FaultKind, Repr, Scalar};
+use core::any::Any;
+use core::cell::Cell;
+
+/// The number of the object that a reference names.
+#[inline]
+pub const fn object(reference: u64) -> u32 {
+    Reference::from_bits(reference).object
+}
+
+/// How far what lies at `distance` bytes from where a reference points is behind the byte of the state at `offset`: far
+/// beyond any array where it is before that.
+#[inline]
+pub const fn behind(reference: u64, distance: u64, offset: u32) -> u64 {
+    (Reference::from_bits(reference).address as u64).wrapping_add(distance).wrapping_sub(ORIGIN as u64 + offset as u64)
+}
+
+/// The variable, if that is where it is looked for.
+#[inline]
+pub fn whole<T>(it: &T, at: u64) -> Option<&T> {
+    if at == 0 { Some(it) } else { None }
+}
+
+/// The element that begins at a byte of an array.
+#[inline]
+pub fn element<T>(array: &[T], at: u64) -> Option<&T> {
+    part(array, at).and_then(|(it, at)| whole(it, at))
+}
+
+/// The element that holds a byte of an array, and the byte's position in it.
+#[inline]
+pub fn part<T>(array: &[T], at: u64) -> Option<(&T, u64)> {
+    let size = size_of::<T>() as u64;
+    let position = usize::try_from(at.checked_div(size)?).ok()?;
+    array.get(position).map(|it| (it, at % size))
+}
+
+/// The reference to a part of the state that is in this object.
+#[inline]
+pub fn to<P: ?Sized>(object: u32, whole: &impl Shared, part: &P) -> u64 {
+    Reference { object, address: ORIGIN + offset(whole, part) as u32 }.bits()
+}
+
+/// What lies at a distance from where a reference points, with the variable that is there if it is one of those that are
+/// expected.
+#[derive(Debug)]
+pub struct Found<'m, T, M> {
+    variable: Option<&'m T>,
+    table: Table<'m>,
+    machine: &'m M,
+    reference: u64,
+    distance: u64,
+}
+
+impl<'t> Table<'t> {
+    #[inline]
+    pub const fn found<T, M>(
+        self,
+        variable: Option<&'t T>,
+        machine: &'t M,
+        reference: u64,
+        distance: u64,
+    ) -> Found<'t, T, M> {
+        Found { variable, table: self, machine, reference, distance }
+    }
+}
+
+impl<'m, T, M: Shared> Found<'m, T, M> {
+    /// The number or BOOL that `of` reads out of the variable, `further` bytes into it.
+    #[inline]
+    pub fn get<V: Scalar>(self, further: u64, of: impl FnOnce(&'m T) -> V) -> Result<V, FaultKind> {
+        self.get_as(view::<V>(), further, of)
+    }
+
+    /// What is seen as nothing but what it is.
+    #[inline]
+    pub fn get_as<V: Scalar>(self, view: View, further: u64, of: impl FnOnce(&'m T) -> V) -> Result<V, FaultKind> {
+        match self.variable {
+            Some(it) => Ok(of(it)),
+            None => self.table.load(self.machine, self.reference, self.distance + further, view),
+        }
+    }
+
+    /// Writes a number or BOOL to where `of` leads in the variable, `further` bytes into it.
+    #[inline]
+    pub fn set<V: Scalar>(self, further: u64, of: impl FnOnce(&'m T) -> &'m Cell<V>, value: V) -> Result<(), FaultKind> {
+        self.set_as(view::<V>(), further, |it, value| of(it).set(value), value)
+    }
+
+    /// The same for what is seen as nothing but what it is: `store` writes it.
+    #[inline]
+    pub fn set_as<V: Scalar>(
+        self,
+        view: View,
+        further: u64,
+        store: impl FnOnce(&'m T, V),
+        value: V,
+    ) -> Result<(), FaultKind> {
+        match self.variable {
+            Some(it) => {
+                store(it, value);
+                Ok(())
+            }
+            None => self.table.store(self.machine, self.reference, self.distance + further, view, value),
+        }
+    }
+
+    /// The part of the variable to which `of` leads, `further` bytes into it: of exactly its type.
+    #[inline]
+    pub fn borrow<V: Any>(
+        self,
+        wanted: Wanted,
+        further: u64,
+        of: impl FnOnce(&'m T) -> &'m V,
+    ) -> Result<&'m V, FaultKind> {
+        match self.variable {
+            Some(it) => Ok(of(it)),
+            None => self.table.variable(self.machine, self.reference, self.distance + further, wanted),
+        }
+    }
+}
+
+/// How a number or BOOL is seen.
+const fn view<V: Scalar>() -> View {
+    match V::LANE {
+        Repr::Bool => View::Truth,
+        repr => View::Number(repr.size()),
+    }
+}
