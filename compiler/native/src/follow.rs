@@ -2,7 +2,6 @@
 
 use crate::address::Address;
 use crate::function::Function;
-use crate::module::FirstObject;
 use crate::runtime_call::by_pointer;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
@@ -19,10 +18,21 @@ const OBJECT_BYTES: i64 = encode::OBJECT_BYTES;
 /// A scalar or string that a reference leads to: the reference, and the distance from where it points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reached {
-    reference: clif::Value,
-    distance: clif::Value,
+    way: Way,
     ty: Type,
     at: Location,
+}
+
+/// How a reference is followed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Way {
+    pub(crate) reference: clif::Value,
+    /// From where the reference points to the variable that is looked up, in bytes; `None` if it points to it.
+    pub(crate) near: Option<clif::Value>,
+    /// The type of that.
+    pub(crate) looked_up: Type,
+    /// From where the reference points to what is looked at.
+    distance: clif::Value,
 }
 
 impl Function<'_, '_> {
@@ -42,15 +52,22 @@ impl Function<'_, '_> {
         if it.pin.is_some() || !is_simple {
             return None;
         }
-        let (reference, distance) = self.way(&it);
-        Some(Reached { reference, distance, ty: place.ty, at: it.at })
+        Some(Reached { way: self.way(&it), ty: place.ty, at: it.at })
     }
 
-    fn way(&mut self, it: &Followed<'_>) -> (clif::Value, clif::Value) {
+    fn way(&mut self, it: &Followed<'_>) -> Way {
         let reference = self.load_place(&it.pointer);
-        let (mut fixed, mut ty) = (0, it.target);
-        let mut distance = None;
-        for projection in it.way {
+        let (to_variable, inside) = it.way.split_at(it.subscripts());
+        let (near, looked_up) = self.steps(None, it.target, to_variable);
+        let (distance, _) = self.steps(near, looked_up, inside);
+        let distance = distance.unwrap_or_else(|| self.ins().iconst(types::I64, 0));
+        Way { reference, near, looked_up, distance }
+    }
+
+    /// Steps from a distance behind a variable, and the type of what they lead to.
+    fn steps(&mut self, from: Option<clif::Value>, ty: Type, steps: &[Projection]) -> (Option<clif::Value>, Type) {
+        let (mut fixed, mut ty, mut distance) = (0, ty, from);
+        for projection in steps {
             let program = self.module.program;
             ty = match (projection, ty) {
                 (Projection::Field(field), _) => {
@@ -72,10 +89,11 @@ impl Function<'_, '_> {
         }
         let fixed = i64::try_from(fixed).expect("verified IR: sizes are within 1 GiB");
         let distance = match distance {
-            Some(step) => self.ins().iadd_imm_s(step, fixed),
-            None => self.ins().iconst(types::I64, fixed),
+            Some(step) if fixed > 0 => Some(self.ins().iadd_imm_s(step, fixed)),
+            None if fixed > 0 => Some(self.ins().iconst(types::I64, fixed)),
+            Some(_) | None => distance,
         };
-        (reference, distance)
+        (distance, ty)
     }
 
     /// The bytes from an array's start to an element.
@@ -108,7 +126,7 @@ impl Function<'_, '_> {
 
     pub(crate) fn load_reached(&mut self, it: Reached) -> clif::Value {
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
-        let Some((pointer, slow)) = self.plain(it) else { return self.load_by_runtime(it, repr) };
+        let Some((pointer, slow)) = self.in_line(it) else { return self.load_by_runtime(it, repr) };
         let done = self.builder.create_block();
         self.builder.append_block_param(done, clif_type(repr));
         let value = self.ins().load(clif_type(repr), anywhere(), pointer, 0);
@@ -118,6 +136,21 @@ impl Function<'_, '_> {
         self.ins().jump(done, &[BlockArg::Value(value)]);
         self.go_on_in(done);
         self.builder.block_params(done)[0]
+    }
+
+    /// Where a scalar lies if it is found in line, and the block for all else, which is still to be filled.
+    fn in_line(&mut self, it: Reached) -> Option<(clif::Value, clif::Block)> {
+        let Some((offset, slow)) = self.expected(it.way) else { return self.plain(it) };
+        let state = self.world()[1].1;
+        let offset = match it.way.near {
+            // The variable's own offset has been found.
+            None => self.ins().iadd(offset, it.way.distance),
+            Some(near) => {
+                let inside = self.ins().isub(it.way.distance, near);
+                self.ins().iadd(offset, inside)
+            }
+        };
+        Some((self.ins().iadd(state, offset), slow))
     }
 
     fn load_by_runtime(&mut self, it: Reached, repr: Repr) -> clif::Value {
@@ -135,7 +168,7 @@ impl Function<'_, '_> {
         self.builder.set_cold_block(slow);
         let [words, state] = self.world().map(|it| it.1);
         let count = i64::from(self.module.reference_objects());
-        let object = self.ins().ushr_imm_u(it.reference, 32);
+        let object = self.ins().ushr_imm_u(it.way.reference, 32);
         let object = self.ins().iadd_imm_s(object, -1);
         let is_known = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, object, count);
         let known = self.builder.create_block();
@@ -146,9 +179,9 @@ impl Function<'_, '_> {
         let entry = self.ins().iadd(words, entry);
         let start = self.ins().uload32(MemFlagsData::trusted(), entry, OBJECTS_AT);
         let length = self.ins().uload32(MemFlagsData::trusted(), entry, OBJECTS_AT + 8);
-        let address = self.ins().ireduce(types::I32, it.reference);
+        let address = self.ins().ireduce(types::I32, it.way.reference);
         let address = self.ins().uextend(types::I64, address);
-        let address = self.ins().iadd(address, it.distance);
+        let address = self.ins().iadd(address, it.way.distance);
         let offset = self.ins().iadd_imm_s(address, -i64::from(ORIGIN));
         let position = self.ins().isub(offset, start);
         // Neither is negative where the number lies within; the sizes are far from those of 64 bits.
@@ -165,7 +198,7 @@ impl Function<'_, '_> {
 
     pub(crate) fn store_reached(&mut self, it: Reached, value: clif::Value) {
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
-        let Some((pointer, slow)) = self.plain(it) else { return self.store_by_runtime(it, repr, value) };
+        let Some((pointer, slow)) = self.in_line(it) else { return self.store_by_runtime(it, repr, value) };
         let done = self.builder.create_block();
         self.ins().store(anywhere(), value, pointer, 0);
         self.ins().jump(done, &[]);
@@ -186,7 +219,7 @@ impl Function<'_, '_> {
         let [words, state] = self.world();
         let view = self.number(view(self.module.program, it.ty).code());
         let size = self.number(repr.size());
-        let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
+        let [reference, distance] = [it.way.reference, it.way.distance].map(|value| (AbiParam::new(types::I64), value));
         [words, state, reference, distance, view, size, by_pointer(value)]
     }
 
@@ -196,7 +229,7 @@ impl Function<'_, '_> {
         let (space, out) = self.space(shape.size);
         let [words, state] = self.world();
         let limit = self.integer(types::I16, i128::from(ty.capacity));
-        let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
+        let [reference, distance] = [it.way.reference, it.way.distance].map(|value| (AbiParam::new(types::I64), value));
         let arguments = [words, state, reference, distance, by_pointer(out), self.by_repr(Repr::U16, limit)];
         let symbol = if ty.wide { "staunch_reference_load_wide_text" } else { "staunch_reference_load_text" };
         self.checked(symbol, &arguments, it.at);
@@ -209,7 +242,7 @@ impl Function<'_, '_> {
         let (space, from) = self.space(shape.size);
         self.assign_text(value, space);
         let [words, state] = self.world();
-        let [reference, distance] = [it.reference, it.distance].map(|value| (AbiParam::new(types::I64), value));
+        let [reference, distance] = [it.way.reference, it.way.distance].map(|value| (AbiParam::new(types::I64), value));
         let arguments = [words, state, reference, distance, by_pointer(from)];
         let wide = value.ty.string_type().is_some_and(|it| it.wide);
         let symbol = if wide { "staunch_reference_store_wide_text" } else { "staunch_reference_store_text" };
@@ -220,11 +253,13 @@ impl Function<'_, '_> {
     pub(crate) fn found(&mut self, place: &Place) -> Address {
         let program = self.module.program;
         let it = followed(program, place).expect("a place that leads through a reference");
-        let (reference, distance) = self.way(&it);
+        let way = self.way(&it);
+        let (reference, distance) = (way.reference, way.distance);
         let wanted = wanted(program, it.ty);
-        let done = match wanted {
-            Wanted::Exact(id) => self.whole(reference, distance, (id, it.ty), it.way.is_empty()),
-            Wanted::Repr(_) | Wanted::Text(_) => None,
+        let done = match (self.found_in_line(way), wanted) {
+            (Some(done), _) => Some(done),
+            (None, Wanted::Exact(id)) => self.whole(reference, distance, (id, it.ty)),
+            (None, Wanted::Repr(_) | Wanted::Text(_)) => None,
         };
         let (space, out) = self.space(8);
         let [words, state] = self.world();
@@ -242,6 +277,21 @@ impl Function<'_, '_> {
         Address::at(base).plus(pin)
     }
 
+    /// Goes to the block that is returned, with the offset of what is where it is expected.
+    fn found_in_line(&mut self, way: Way) -> Option<clif::Block> {
+        let (offset, slow) = self.expected(way)?;
+        let done = self.builder.create_block();
+        self.builder.append_block_param(done, types::I64);
+        let inside = match way.near {
+            None => way.distance,
+            Some(near) => self.ins().isub(way.distance, near),
+        };
+        let offset = self.ins().iadd(offset, inside);
+        self.ins().jump(done, &[BlockArg::Value(offset)]);
+        self.builder.switch_to_block(slow);
+        Some(done)
+    }
+
     /// Goes to the block that is returned, with the offset of an object that is exactly of the type and in no pool: what
     /// the runtime says of such an object, in line. All else goes on in the block that is current then.
     fn whole(
@@ -249,7 +299,6 @@ impl Function<'_, '_> {
         reference: clif::Value,
         distance: clif::Value,
         (id, ty): (u32, Type),
-        is_direct: bool,
     ) -> Option<clif::Block> {
         if self.module.layout.size(ty) == 0 {
             return None;
@@ -264,25 +313,15 @@ impl Function<'_, '_> {
             | Type::Enum(_)
             | Type::Block(_) => encode::EXACT,
         };
-        let first = self.module.object_of(kind, id)?;
+        if !self.module.has_object_of(kind, id) {
+            return None;
+        }
         let (slow, done) = (self.builder.create_block(), self.builder.create_block());
         self.builder.set_cold_block(slow);
         self.builder.append_block_param(done, types::I64);
-        match is_direct && first.is_only {
-            true => self.jump_to_only(reference, first, slow, done),
-            false => self.jump_to_object(reference, distance, (kind, id), slow, done),
-        }
+        self.jump_to_object(reference, distance, (kind, id), slow, done);
         self.go_on_in(slow);
         Some(done)
-    }
-
-    /// The program has one object of the type.
-    fn jump_to_only(&mut self, reference: clif::Value, object: FirstObject, slow: clif::Block, done: clif::Block) {
-        let only = Reference { object: object.number, address: ORIGIN + object.offset }.bits();
-        let place = self.ins().ishl_imm_u(reference, i64::from(64 - CLASS));
-        let is_it = self.ins().icmp_imm_u(IntCC::Equal, place, (only << (64 - CLASS)).cast_signed());
-        let offset = self.ins().iconst(types::I64, i64::from(object.offset));
-        self.ins().brif(is_it, done, &[BlockArg::Value(offset)], slow, &[]);
     }
 
     fn jump_to_object(
@@ -329,13 +368,17 @@ impl Function<'_, '_> {
     /// The reference to a place.
     pub(crate) fn reference_to(&mut self, place: &Place) -> clif::Value {
         if let Some(it) = followed(self.module.program, place) {
-            let (reference, distance) = self.way(&it);
-            return self.advanced(reference, distance);
+            let way = self.way(&it);
+            return self.advanced(way.reference, way.distance);
         }
         let address = self.address(place);
         let pointer = self.pointer(address);
         let [words, state] = self.world();
         let offset = self.ins().isub(pointer, state.1);
+        if let Some(object) = self.module.targets().object_of(self.routine, place) {
+            let first = Reference { object, address: ORIGIN }.bits();
+            return self.ins().iadd_imm_s(offset, first.cast_signed());
+        }
         let size = usize_of(self.module.layout.size(place.ty));
         let size = i64::try_from(size).expect("verified IR: sizes are within 1 GiB");
         let size = self.ins().iconst(types::I64, size);

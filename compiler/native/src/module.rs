@@ -1,5 +1,6 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
+use crate::expected::{Expectation, expectations};
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
@@ -8,9 +9,10 @@ use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
 use staunch_ir::effects::Effects;
 use staunch_ir::layout::{Layout, usize_of};
-use staunch_ir::{Program, Routine, RoutineId, RoutineKind};
+use staunch_ir::reference::Targets;
+use staunch_ir::{Program, Routine, RoutineId, RoutineKind, Type};
 use staunch_runtime::reference::encode;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
 
 /// Functions of more instructions are not optimised: that takes time that grows faster than they do,
@@ -24,30 +26,16 @@ const FRAME_ENDS: u64 = 16;
 struct References {
     table: DataId,
     count: u32,
-    /// By the kind and the number of their types.
-    objects: HashMap<(u32, u32), FirstObject>,
+    /// The kinds and numbers of the types of those in no pool.
+    types: HashSet<(u32, u32)>,
 }
 
-/// The first object of a type.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FirstObject {
-    pub(crate) number: u32,
-    pub(crate) offset: u32,
-    /// There is no other one.
-    pub(crate) is_only: bool,
-}
-
-/// The first objects in no pool of each type.
-fn objects(words: &[u32]) -> HashMap<(u32, u32), FirstObject> {
-    let mut found: HashMap<(u32, u32), FirstObject> = HashMap::new();
+/// The types of the objects that are in no pool.
+fn types_of_objects(words: &[u32]) -> HashSet<(u32, u32)> {
     let count = words.first().map_or(0, |it| usize_of(u64::from(*it)));
     let all = words.get(encode::HEAD..).unwrap_or_default().chunks_exact(encode::OBJECT).take(count);
-    for (object, number) in all.zip(1..).filter(|(it, _)| it[3] == 0) {
-        let node = usize_of(u64::from(object[4]));
-        let first = FirstObject { number, offset: object[0], is_only: true };
-        found.entry((words[node], words[node + 2])).and_modify(|it| it.is_only = false).or_insert(first);
-    }
-    found
+    let nodes = all.filter(|it| it[3] == 0).map(|it| usize_of(u64::from(it[4])));
+    nodes.map(|node| (words[node], words[node + 2])).collect()
 }
 
 pub(crate) struct ModuleEmitter<'p> {
@@ -63,6 +51,9 @@ pub(crate) struct ModuleEmitter<'p> {
     pub(crate) handles_faults: bool,
     /// Where something follows or makes a reference.
     references: Option<References>,
+    /// Where they lead, and what code compares them with, by the types that are looked for.
+    targets: Option<Targets<'p>>,
+    expectations: HashMap<Type, Vec<Expectation>>,
     /// How much of the stack each function takes, in the order in which they are made.
     pub(crate) frames: Vec<u64>,
     /// The functions as text, where it is wanted.
@@ -87,6 +78,8 @@ impl<'p> ModuleEmitter<'p> {
             imports: HashMap::new(),
             constants: HashMap::new(),
             references: None,
+            targets: None,
+            expectations: HashMap::new(),
             frames: Vec::with_capacity(program.routines.len()),
             listing: None,
         }
@@ -151,17 +144,32 @@ impl<'p> ModuleEmitter<'p> {
         self.references().count
     }
 
-    /// The first of the objects whose outermost variable is of a type, and which are in no pool.
-    pub(crate) fn object_of(&mut self, kind: u32, id: u32) -> Option<FirstObject> {
-        self.references().objects.get(&(kind, id)).copied()
+    /// Whether an object's outermost variable is of a type, and it is in no pool.
+    pub(crate) fn has_object_of(&mut self, kind: u32, id: u32) -> bool {
+        self.references().types.contains(&(kind, id))
+    }
+
+    /// Where references lead.
+    pub(crate) fn targets(&mut self) -> &Targets<'p> {
+        self.targets.get_or_insert_with(|| Targets::new(self.program, &self.layout))
+    }
+
+    /// Where variables of a type are expected, by what is looked for.
+    pub(crate) fn expectations(&mut self, ty: Type) -> Vec<Expectation> {
+        if let Some(known) = self.expectations.get(&ty) {
+            return known.clone();
+        }
+        let found = expectations(self.targets(), ty);
+        self.expectations.insert(ty, found.clone());
+        found
     }
 
     fn references(&mut self) -> &References {
         if self.references.is_none() {
             let words = staunch_ir::reference::table(self.program, &self.layout);
-            let (count, objects) = (words.first().copied().unwrap_or_default(), objects(&words));
+            let (count, types) = (words.first().copied().unwrap_or_default(), types_of_objects(&words));
             let table = self.constant(words.into_iter().flat_map(u32::to_le_bytes).collect());
-            self.references = Some(References { table, count, objects });
+            self.references = Some(References { table, count, types });
         }
         self.references.as_ref().expect("they were made")
     }

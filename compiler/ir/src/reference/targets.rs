@@ -76,6 +76,12 @@ impl<'p> Targets<'p> {
         found
     }
 
+    /// The objects that are nothing but numbers, which may be seen as any number: their numbers, offsets and sizes.
+    pub fn plain(&self) -> impl Iterator<Item = (u32, u64, u64)> {
+        let plain = self.objects.iter().zip(1..).filter(|(it, _)| it.is_plain);
+        plain.map(|(it, number)| (number, it.offset, it.size))
+    }
+
     /// The number of the object that the address of a place is in, where that is one in all instances and for all
     /// subscripts.
     pub fn object_of(&self, routine: &Routine, place: &Place) -> Option<u32> {

@@ -1,0 +1,161 @@
+//! Looking for what a reference leads to where it is expected: in line, by a comparison with each of the few variables
+//! of the type. All else is left to who asks: the table of objects decides it.
+
+use crate::follow::Way;
+use crate::function::Function;
+use cranelift_codegen::ir::{self as clif, BlockArg, InstBuilder, condcodes::IntCC, types};
+use staunch_ir::reference::{Step, Target, Targets};
+use staunch_ir::{Repr, Type};
+use staunch_runtime::reference::{CLASS, ORIGIN, Reference};
+
+/// Where a variable is expected: in an object, from a byte of the state on.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Expectation {
+    object: u32,
+    offset: u32,
+    which: Which,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Which {
+    /// One variable.
+    One,
+    /// Each of so many elements of this size.
+    Elements { stride: u64, len: u64 },
+    /// A number that begins at any byte up to this one.
+    Anywhere { last: u64 },
+}
+
+/// Code compares with so many; where more are expected, it asks the table at once.
+const MOST: usize = 4;
+/// The bits above an object's number.
+const CLASS_BITS: i64 = 64 - CLASS as i64;
+
+/// Where variables of a type are expected; nothing where they may be in many places.
+pub(crate) fn expectations(targets: &Targets<'_>, ty: Type) -> Vec<Expectation> {
+    let number = match ty {
+        Type::Elementary(it) if it.repr() != Repr::Bool => Some(u64::from(it.repr().size())),
+        _ => None,
+    };
+    let plain: Vec<_> = number.iter().flat_map(|_| targets.plain()).take(MOST + 1).collect();
+    let is_plain = |it: &&Target| plain.iter().any(|(object, ..)| *object == it.object);
+    let numbers = plain.iter().filter_map(|it| anywhere(*it, number?)).map(Some);
+    let found: Option<Vec<_>> = match plain.len() {
+        ..=MOST => numbers.chain(targets.lead_to(ty).iter().filter(|it| !is_plain(it)).map(expectation)).collect(),
+        _ => None,
+    };
+    found.filter(|it| it.len() <= MOST).unwrap_or_default()
+}
+
+fn anywhere((object, offset, size): (u32, u64, u64), of_number: u64) -> Option<Expectation> {
+    let which = Which::Anywhere { last: size.checked_sub(of_number)? };
+    Some(Expectation { object, offset: u32::try_from(offset).ok()?, which })
+}
+
+/// `None` where the elements are apart from each other.
+fn expectation(target: &Target) -> Option<Expectation> {
+    let mut which = Which::One;
+    for step in &target.way {
+        which = match (which, step) {
+            (_, Step::Field(_) | Step::Element(_)) => which,
+            (Which::One, Step::Each { stride, len }) => Which::Elements { stride: *stride, len: *len },
+            (Which::Elements { stride: outer, len: rows }, Step::Each { stride, len }) if outer == stride * len => {
+                Which::Elements { stride: *stride, len: rows * len }
+            }
+            (Which::Elements { .. } | Which::Anywhere { .. }, Step::Each { .. }) => return None,
+        };
+    }
+    Some(Expectation { object: target.object, offset: u32::try_from(target.offset).ok()?, which })
+}
+
+impl Function<'_, '_> {
+    /// The offset in the state of what is where it is expected, in the block that is current then, and the block for all
+    /// else, which is still to be filled.
+    pub(crate) fn expected(&mut self, way: Way) -> Option<(clif::Value, clif::Block)> {
+        let all = self.module.expectations(way.looked_up);
+        let (last, others) = all.split_last()?;
+        let (found, slow) = (self.builder.create_block(), self.builder.create_block());
+        self.builder.set_cold_block(slow);
+        self.builder.append_block_param(found, types::I64);
+        let low = self.ins().ireduce(types::I32, way.reference);
+        let address = self.ins().uextend(types::I64, low);
+        let address = way.near.map_or(address, |near| self.ins().iadd(address, near));
+        let without_class = self.ins().ishl_imm_u(way.reference, CLASS_BITS);
+        for it in others {
+            let next = self.builder.create_block();
+            self.compare(it, (without_class, address), way.near.is_some(), found, next);
+            self.go_on_in(next);
+        }
+        self.compare(last, (without_class, address), way.near.is_some(), found, slow);
+        self.builder.seal_block(slow);
+        self.go_on_in(found);
+        Some((self.builder.block_params(found)[0], slow))
+    }
+
+    /// Goes to `found` with the offset if the variable is there, else to the other block.
+    fn compare(
+        &mut self,
+        it: &Expectation,
+        (without_class, address): (clif::Value, clif::Value),
+        is_near: bool,
+        found: clif::Block,
+        otherwise: clif::Block,
+    ) {
+        let first = ORIGIN + it.offset;
+        let is_there = if is_near {
+            // The object is compared by itself: an address and a distance may be more than 32 bits.
+            let object = self.ins().ushr_imm_u(without_class, CLASS_BITS + 32);
+            let is_object = self.ins().icmp_imm_u(IntCC::Equal, object, i64::from(it.object));
+            let behind = self.ins().iadd_imm_s(address, -i64::from(first));
+            let is_one = self.is_one(it.which, behind, 0);
+            self.ins().band(is_object, is_one)
+        } else {
+            let first = Reference { object: it.object, address: first }.bits() << CLASS_BITS;
+            let first = self.ins().iconst(types::I64, first.cast_signed());
+            let behind = self.ins().isub(without_class, first);
+            self.is_one(it.which, behind, CLASS_BITS)
+        };
+        let offset = match (it.which, is_near) {
+            (Which::One, _) => self.ins().iconst(types::I64, i64::from(it.offset)),
+            _ => self.ins().iadd_imm_s(address, -i64::from(ORIGIN)),
+        };
+        self.ins().brif(is_there, found, &[BlockArg::Value(offset)], otherwise, &[]);
+    }
+
+    /// Whether a variable begins so far behind the first, which is shifted to the left.
+    fn is_one(&mut self, which: Which, behind: clif::Value, shift: i64) -> clif::Value {
+        match which {
+            Which::One => self.ins().icmp_imm_u(IntCC::Equal, behind, 0),
+            Which::Anywhere { last } => {
+                let last = self.ins().iconst(types::I64, last.cast_signed() << shift);
+                self.ins().icmp(IntCC::UnsignedLessThanOrEqual, behind, last)
+            }
+            Which::Elements { stride, len } => {
+                // By the odd part's inverse and a rotation a multiple of the size becomes its position, and all else a
+                // number beyond each array.
+                let twos = stride.trailing_zeros();
+                let behind = match stride >> twos {
+                    1 => behind,
+                    odd => {
+                        let inverse = self.ins().iconst(types::I64, inverse(odd).cast_signed());
+                        self.ins().imul(behind, inverse)
+                    }
+                };
+                let position = self.ins().rotr_imm_u(behind, shift + i64::from(twos));
+                let len = self.ins().iconst(types::I64, len.cast_signed());
+                self.ins().icmp(IntCC::UnsignedLessThan, position, len)
+            }
+        }
+    }
+}
+
+/// What an odd number is multiplied with to give 1, in 64 bits.
+const fn inverse(odd: u64) -> u64 {
+    // Newton's iteration: each turn doubles the bits that are right, of which there are three at the start.
+    let (mut inverse, mut turns) = (odd, 0);
+    while turns < 5 {
+        inverse = inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse)));
+        turns += 1;
+    }
+    inverse
+}
