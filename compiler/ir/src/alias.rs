@@ -8,7 +8,7 @@
 use crate::shapes;
 use crate::visit::{self, Access};
 use crate::{
-    Expr, Param, Place, Program, Projection, Reach, Root, Routine, Section, Statement, StatementKind, StructId, Type,
+    Expr, Param, Place, Program, Projection, Root, Routine, Section, Statement, StatementKind, StructId, Type,
 };
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,10 +60,16 @@ impl<'p> Frame<'p> {
             (Root::Instance, Some(Projection::Field(id))) => self.state.is_some_and(|state| {
                 let field = &self.program.structure(state).fields[id.index()];
                 let is_own = field.section == Section::Internal && field.address.is_none();
-                is_own && self.program.reach == Reach::default()
+                is_own && !self.program.reach.copies && !self.is_reached(place)
             }),
             (Root::Instance | Root::Globals | Root::Param(_), _) => false,
         }
+    }
+
+    /// Whether a reference may lead to the place, to a part of it, or to what it is a part of.
+    pub fn is_reached(&self, place: &Place) -> bool {
+        let is_in = |it: &crate::reference::Reach| it.holds(self.program, self.state, place);
+        self.program.reach.references && self.program.reached.as_ref().is_none_or(is_in)
     }
 
     fn globals(&self) -> Place {
@@ -75,8 +81,8 @@ impl<'p> Frame<'p> {
 /// live for one call; those whose addresses are taken have [fixed storage](crate::reference::fixed).
 pub fn alias(frame: &Frame<'_>, a: &Place, b: &Place) -> Alias {
     if a.is_followed() || b.is_followed() {
-        let is_local = |it: &Place| matches!(it.root, Root::Local(_)) && !it.is_followed();
-        return if is_local(a) || is_local(b) { Alias::No } else { Alias::May };
+        let is_apart = |it: &Place| !it.is_followed() && (is_local(it) || !frame.is_reached(it));
+        return if is_apart(a) || is_apart(b) { Alias::No } else { Alias::May };
     }
     if a.root == b.root {
         return paths(&a.projections, &b.projections);
@@ -88,6 +94,10 @@ pub fn alias(frame: &Frame<'_>, a: &Place, b: &Place) -> Alias {
         (false, false) => lies_in(frame, a, b) || lies_in(frame, b, a),
     };
     if meet { Alias::May } else { Alias::No }
+}
+
+fn is_local(place: &Place) -> bool {
+    matches!(place.root, Root::Local(_))
 }
 
 /// Whether the root of `a` may be an object on the way to `b`, or a part of it, so that they meet.
@@ -183,9 +193,9 @@ fn reads_shared(frame: &Frame<'_>, expr: &Expr) -> bool {
     let globals = frame.globals();
     let mut found = false;
     if frame.program.reach.references {
-        // A callee may reach any variable, also a local whose address it is passed.
-        visit::reads(expr, &mut |_| found = true);
-        return found;
+        // As long as it is not known which, a callee may reach any variable, also a local whose address it is passed.
+        let is_known = frame.program.reached.is_some();
+        visit::reads(expr, &mut |it| found |= !is_known || frame.is_reached(it));
     }
     visit::reads(expr, &mut |it| found |= !frame.is_private(it) && alias(frame, it, &globals) != Alias::No);
     found

@@ -65,6 +65,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
+        reached: None,
         places: std::collections::BTreeSet::new(),
         uses: Uses::default(),
         is_configured: false,

@@ -25,6 +25,16 @@ pub fn is_private(frame: &Frame<'_>, counter: &Place, body: &[Statement]) -> boo
     counter.indices().next().is_none() && nobody_else && !alias::writes(frame, body, counter)
 }
 
+/// Says of each loop whose counter is private that it is.
+pub fn privatise(frame: &Frame<'_>, block: &mut [Statement]) {
+    for statement in block {
+        if let StatementKind::For(it) = &mut statement.kind {
+            it.is_private |= is_private(frame, &it.counter, &it.body);
+        }
+        statement.kind.blocks_mut().into_iter().for_each(|it| privatise(frame, it));
+    }
+}
+
 fn calls(body: &[Statement]) -> bool {
     let mut found = false;
     visit::statements(body, &mut |it| found |= matches!(it.kind, StatementKind::Call { .. }));

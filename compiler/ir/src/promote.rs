@@ -21,7 +21,7 @@ mod set_first;
 use crate::alias::{Alias, Frame, alias};
 use crate::effects::{Rules, statement_faults};
 use crate::faults::code_faults;
-use crate::loops::{checked_locals, is_private};
+use crate::loops::{checked_locals, privatise};
 use crate::visit::{self, Access, Rewrite};
 use crate::{
     Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
@@ -307,15 +307,6 @@ fn in_locals(frame: &Frame<'_>, statement: &mut Statement, candidates: &[Candida
     let statements = std::slice::from_mut(statement);
     visit::rewrite(statements, &mut Renamer { candidates });
     privatise(frame, statements);
-}
-
-fn privatise(frame: &Frame<'_>, block: &mut [Statement]) {
-    for statement in block {
-        if let StatementKind::For(it) = &mut statement.kind {
-            it.is_private |= is_private(frame, &it.counter, &it.body);
-        }
-        statement.kind.blocks_mut().into_iter().for_each(|it| privatise(frame, it));
-    }
 }
 
 struct Renamer<'a> {

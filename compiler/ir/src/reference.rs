@@ -4,11 +4,13 @@
 pub mod escape;
 mod fixed;
 mod objects;
+mod reach;
 mod table;
 mod targets;
 
 pub use fixed::fixed;
 pub use objects::objects;
+pub use reach::{Reach, settle};
 pub use table::{table, view, wanted};
 pub use targets::{Step, Target, Targets};
 
@@ -71,18 +73,9 @@ pub fn addressable(program: &Program) -> BTreeSet<(StructId, FieldId)> {
     found.variables
 }
 
-/// The variables that references may lead into: those whose addresses are taken, and those that hold an instance
-/// of which a variable's address is.
+/// The variables that references may lead into: those that they may lead to, and those that hold an instance with one.
 pub fn reached(program: &Program) -> BTreeSet<(StructId, FieldId)> {
-    let found = Finder::search(program);
-    let owners: BTreeSet<_> = found.variables.iter().map(|it| it.0).collect();
-    let mut all = found.variables;
-    for state in found.states {
-        let fields = program.structure(state).fields.iter().enumerate();
-        let holders = fields.filter(|(_, it)| holds(program, it.ty, &owners));
-        all.extend(holders.map(|(at, _)| (state, FieldId::next(at))));
-    }
-    all
+    Reach::of(program).with_holders(program)
 }
 
 /// The types of what references are followed to, each once.

@@ -13,6 +13,7 @@ mod statement;
 mod taking;
 mod types;
 
+use crate::reference::Reach;
 use crate::{Location, Program};
 use core::fmt::{self, Display};
 
@@ -29,7 +30,7 @@ pub struct Violation {
 pub fn verify(program: &Program) -> Result<(), Vec<Violation>> {
     let mut verifier = Verifier { program, loopers: Vec::new(), within: String::new(), violations: Vec::new() };
     // Later steps rely on ids and types that the earlier ones found sound.
-    for step in [Verifier::types, Verifier::routines, Verifier::bodies] {
+    for step in [Verifier::types, Verifier::routines, Verifier::bodies, Verifier::reach] {
         step(&mut verifier);
         if !verifier.violations.is_empty() {
             return Err(verifier.violations);
@@ -47,6 +48,13 @@ struct Verifier<'p> {
 }
 
 impl Verifier<'_> {
+    fn reach(&mut self) {
+        let Some(known) = &self.program.reached else { return };
+        let is_covered = known.covers(&Reach::of(self.program));
+        self.within = "references".to_owned();
+        self.require(is_covered, Location::default(), "the address of a variable that they are said not to reach");
+    }
+
     fn report(&mut self, at: Location, message: impl Display) {
         let violation = Violation { within: self.within.clone(), at, message: message.to_string() };
         self.violations.push(violation);

@@ -685,6 +685,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: staunch_ir::Reach::default(),
+        reached: None,
         places: std::collections::BTreeSet::new(),
         uses: staunch_ir::Uses::default(),
         is_configured: false,
