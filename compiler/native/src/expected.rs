@@ -6,7 +6,7 @@ use crate::function::Function;
 use cranelift_codegen::ir::{self as clif, BlockArg, InstBuilder, condcodes::IntCC, types};
 use staunch_ir::reference::{Step, Target, Targets};
 use staunch_ir::{Repr, Type};
-use staunch_runtime::reference::{CLASS, ORIGIN, Reference};
+use staunch_runtime::reference::{CLASS, ORIGIN, Reference, inverse};
 
 /// Where a variable is expected: in an object, from a byte of the state on.
 #[derive(Clone, Copy, Debug)]
@@ -147,15 +147,4 @@ impl Function<'_, '_> {
             }
         }
     }
-}
-
-/// What an odd number is multiplied with to give 1, in 64 bits.
-const fn inverse(odd: u64) -> u64 {
-    // Newton's iteration: each turn doubles the bits that are right, of which there are three at the start.
-    let (mut inverse, mut turns) = (odd, 0);
-    while turns < 5 {
-        inverse = inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse)));
-        turns += 1;
-    }
-    inverse
 }

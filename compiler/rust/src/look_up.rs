@@ -49,31 +49,21 @@ impl Emitter<'_> {
     pub fn look_up(&self, it: &LookUp) -> TokenStream {
         let (name, ty) = (&it.name, self.stored(it.ty));
         let doc = format!(" The {} that a reference leads to, if it is where one is expected.", self.program.type_name(it.ty));
-        let arms = it.targets.chunk_by(|a, b| a.object == b.object).map(|targets| self.arm(targets));
+        let mut places = it.targets.iter().map(|it| self.place_of(it));
+        let first = places.next();
         quote! {
             #[doc = #doc]
             #[inline]
             fn #name(&self, reference: u64, distance: u64) -> reference::Found<'_, #ty, Self> {
-                let behind = |offset| reference::behind(reference, distance, offset);
-                let variable = match reference::object(reference) {
-                    #(#arms,)*
-                    _ => None,
-                };
+                let behind = |object, offset| reference::behind(reference, distance, object, offset);
+                let variable = #first #(.or_else(|| #places))*;
                 REFERENCES.found(variable, self, reference, distance)
             }
         }
     }
 
-    /// What is found in one object.
-    fn arm(&self, targets: &[Target]) -> TokenStream {
-        let object = targets.first().map(|it| number(it.object.into()));
-        let mut places = targets.iter().map(|it| self.place_of(it));
-        let first = places.next();
-        quote!(#object => #first #(.or_else(|| #places))*)
-    }
-
     fn place_of(&self, target: &Target) -> TokenStream {
-        let offset = number(target.offset);
+        let (object, offset) = (number(target.object.into()), number(target.offset));
         let (root, state) = match target.instance {
             None => (quote!(self.globals), self.program.globals),
             Some(at) => {
@@ -81,7 +71,7 @@ impl Emitter<'_> {
                 (quote!(self.#name), self.program.class(self.program.instances[at].program).state)
             }
         };
-        self.within(root, Type::Struct(state), &target.way, &quote!(behind(#offset)))
+        self.within(root, Type::Struct(state), &target.way, &quote!(behind(#object, #offset)))
     }
 
     /// What the way leads to from a variable, where the position in it is `at`.

@@ -221,6 +221,7 @@ impl Function<'_> {
             Some(found) if is_exact => {
                 quote!(#found.set_as(#view, #further, |it, value| it #inside.set(#new), #value) #at?;)
             }
+            Some(found) if inside.is_empty() => quote!(#found.set(#further, |it| it, #value) #at?;),
             Some(found) => quote!(#found.set(#further, |it| &it #inside, #value) #at?;),
             None => quote!(REFERENCES.store::<#repr>(machine, #reference, #distance, #view, #value) #at?;),
         }))

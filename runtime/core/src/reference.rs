@@ -18,7 +18,7 @@ mod memory;
 mod table;
 
 pub use crate::{shared, shared_enumeration};
-pub use found::{Found, behind, element, object, part, to, whole};
+pub use found::{Found, behind, element, inverse, part, to, whole};
 pub use memory::{Memory, Raw, Shared, find, inside, offset, this};
 pub use table::{Part, Table, View, Wanted, encode};
 

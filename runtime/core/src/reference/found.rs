@@ -1,22 +1,29 @@
 //! What a reference leads to, looked for where it is expected: emitted Rust compares with the few places where a
 //! variable of the type is, and asks the table of objects for all else.
 
-use super::{ORIGIN, Reference, Shared, Table, View, Wanted, offset};
+use super::{CLASS, ORIGIN, Reference, Shared, Table, View, Wanted, offset};
 use crate::{FaultKind, Repr, Scalar};
 use core::any::Any;
 use core::cell::Cell;
 
-/// The number of the object that a reference names.
-#[inline]
-pub const fn object(reference: u64) -> u32 {
-    Reference::from_bits(reference).object
-}
+/// The bits of a reference that say where it points: without its class.
+const PLACE: u64 = (1 << CLASS) - 1;
 
-/// How far what lies at `distance` bytes from where a reference points is behind the byte of the state at `offset`: far
-/// beyond any array where it is before that.
+/// How far what lies at `distance` bytes from where a reference points is behind the byte of the state at `offset`, in this
+/// object: far beyond any array where it is before that, or in another object.
 #[inline]
-pub const fn behind(reference: u64, distance: u64, offset: u32) -> u64 {
-    (Reference::from_bits(reference).address as u64).wrapping_add(distance).wrapping_sub(ORIGIN as u64 + offset as u64)
+pub const fn behind(reference: u64, distance: u64, object: u32, offset: u32) -> u64 {
+    let first = Reference { object, address: ORIGIN + offset };
+    if distance == 0 {
+        return (reference & PLACE).wrapping_sub(first.bits());
+    }
+    // The object is compared by itself: an address and a distance may be more than 32 bits.
+    let at = Reference::from_bits(reference);
+    if at.object == object {
+        (at.address as u64).wrapping_add(distance).wrapping_sub(first.address as u64)
+    } else {
+        u64::MAX
+    }
 }
 
 /// The variable, if that is where it is looked for.
@@ -28,7 +35,27 @@ pub fn whole<T>(it: &T, at: u64) -> Option<&T> {
 /// The element that begins at a byte of an array.
 #[inline]
 pub fn element<T>(array: &[T], at: u64) -> Option<&T> {
-    part(array, at).and_then(|(it, at)| whole(it, at))
+    let size = size_of::<T>() as u64;
+    let twos = size.trailing_zeros();
+    // By the odd part's inverse and a rotation a multiple of the size becomes its position, and all else a number beyond
+    // each array.
+    let position = at.wrapping_mul(const { inverse(size_of::<T>() as u64) }).rotate_right(twos);
+    array.get(usize::try_from(position).ok()?)
+}
+
+/// What the odd part of a number is multiplied with to give 1, in 64 bits.
+pub const fn inverse(number: u64) -> u64 {
+    let odd = match number {
+        0 => 1,
+        number => number >> number.trailing_zeros(),
+    };
+    // Newton's iteration: each turn doubles the bits that are right, of which there are three at the start.
+    let (mut inverse, mut turns) = (odd, 0);
+    while turns < 5 {
+        inverse = inverse.wrapping_mul(2_u64.wrapping_sub(odd.wrapping_mul(inverse)));
+        turns += 1;
+    }
+    inverse
 }
 
 /// The element that holds a byte of an array, and the byte's position in it.
