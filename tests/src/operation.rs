@@ -110,6 +110,7 @@ pub fn program(tasks: &[Task]) -> Program {
         bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
+        reached: None,
         places: std::collections::BTreeSet::new(),
         uses: staunch_ir::Uses::default(),
         is_configured: false,

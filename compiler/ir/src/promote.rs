@@ -16,6 +16,7 @@
 //! array, or what a reference leads to, might be the same storage. That an index is within its bounds is also known more
 //! often: a local counter is private to its loop.
 
+mod read_once;
 mod set_first;
 
 use crate::alias::{Alias, Frame, alias};
@@ -27,6 +28,7 @@ use crate::{
     Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
     StatementKind, Taking, Type, Value,
 };
+use read_once::read_once;
 use set_first::is_set_first;
 use staunch_runtime::Repr;
 
@@ -61,6 +63,7 @@ pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
         let declared = routine.locals.len();
         let around = Vec::new();
         Promoter { program: &program, gain, routine: &mut routine, declared, checked, around }.block(&mut body);
+        read_once(&program, &mut routine, &mut body, declared);
         program.routines[at] = Routine { body, ..routine };
     }
     program
@@ -188,7 +191,7 @@ impl Promoter<'_> {
 
     /// A local for a variable. Where a routine has many, they are those of loops before.
     fn local(&mut self, place: &Place, taken: &[Candidate]) -> Option<LocalId> {
-        let (name, ty) = (self.name(place), place.ty);
+        let (name, ty) = (name(self.program, self.routine, place), place.ty);
         let count = self.routine.locals.len();
         if count < self.declared + MOST_LOCALS {
             let zero = self.program.repr(ty).map_or(Value::Bool(false), Repr::zero);
@@ -199,22 +202,6 @@ impl Promoter<'_> {
             let local = &self.routine.locals[id.index()];
             local.name == name && local.ty == ty && !taken.iter().any(|it| it.local == *id)
         })
-    }
-
-    /// As the variable, or as the last member on the way to it.
-    fn name(&self, place: &Place) -> String {
-        let mut ty = Frame::of(self.program, self.routine).root_type(place.root);
-        let mut name = match place.root {
-            Root::Param(id) => self.routine.params[id.index()].name.clone(),
-            Root::Instance | Root::Globals | Root::Local(_) => String::new(),
-        };
-        for projection in &place.projections {
-            if let (Some(Type::Struct(id)), Projection::Field(field)) = (ty, projection) {
-                name.clone_from(&self.program.structure(id).fields[field.index()].name);
-            }
-            ty = ty.and_then(|it| self.program.part(it, projection));
-        }
-        name
     }
 
     /// Whether the loop can fault after it has begun, or before by what its head evaluates.
@@ -229,6 +216,22 @@ impl Promoter<'_> {
         checked.resize(self.routine.locals.len(), false);
         statement_faults(self.program, &RULES, self.routine, (self.around.iter().collect(), checked), &begun)
     }
+}
+
+/// As the variable, or as the last member on the way to it.
+fn name(program: &Program, routine: &Routine, place: &Place) -> String {
+    let mut ty = Frame::of(program, routine).root_type(place.root);
+    let mut name = match place.root {
+        Root::Param(id) => routine.params[id.index()].name.clone(),
+        Root::Instance | Root::Globals | Root::Local(_) => String::new(),
+    };
+    for projection in &place.projections {
+        if let (Some(Type::Struct(id)), Projection::Field(field)) = (ty, projection) {
+            name.clone_from(&program.structure(id).fields[field.index()].name);
+        }
+        ty = ty.and_then(|it| program.part(it, projection));
+    }
+    name
 }
 
 impl Touched {

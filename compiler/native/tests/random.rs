@@ -114,6 +114,7 @@ impl Maker {
             bound: Vec::new(),
             reentered: std::collections::BTreeSet::new(),
             reach: Reach::default(),
+            reached: None,
             places: std::collections::BTreeSet::new(),
             uses: Default::default(),
             is_configured: false,

@@ -41,8 +41,10 @@ pub struct Targets<'p> {
     objects: Vec<Object>,
 }
 
-/// A look-up compares with each: of more, the rest is left to the table.
+/// A look-up compares with each: where there are more, the table is asked at once.
 const MOST: usize = 16;
+/// More are not looked for.
+const ENOUGH: usize = 64;
 /// Of so many instances it is asked whether a variable is in one object.
 const INSTANCES: usize = 64;
 
@@ -66,14 +68,18 @@ impl<'p> Targets<'p> {
             found: Vec::new(),
         };
         for (at, object) in self.objects.iter().enumerate().filter(|(_, it)| it.mark == 0) {
+            if search.found.len() > ENOUGH {
+                break;
+            }
             search.object(at, object);
         }
         let mut found = search.found;
-        found.sort_by_key(|(depth, it)| (*depth, it.object));
-        found.truncate(MOST);
-        let mut found: Vec<_> = found.into_iter().map(|it| it.1).collect();
-        found.sort_by_key(|it| (it.object, it.offset));
-        found
+        for depth in (0..=MOST).rev() {
+            if found.len() > MOST {
+                found.retain(|it| it.0 < depth);
+            }
+        }
+        found.into_iter().map(|it| it.1).collect()
     }
 
     /// The objects that are nothing but numbers, which may be seen as any number: their numbers, offsets and sizes.

@@ -91,6 +91,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         bound: Vec::new(),
         reentered: std::collections::BTreeSet::new(),
         reach: Reach::default(),
+        reached: None,
         places: std::collections::BTreeSet::new(),
         uses: Default::default(),
         is_configured: false,
