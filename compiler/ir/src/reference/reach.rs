@@ -1,7 +1,7 @@
 //! What references may lead to: a set, so that the address of one variable costs nothing where another is used.
 
 use super::{Finder, holds};
-use crate::{FieldId, Place, Program, Projection, Root, StructId, Type};
+use crate::{FieldId, Place, Program, Projection, Root, Statement, StatementKind, StructId, Type};
 use std::collections::BTreeSet;
 
 /// The variables that references may lead to, and so read and write: fields of the globals and of states.
@@ -106,6 +106,20 @@ pub fn settle(program: &mut Program) {
         let mut body = std::mem::take(&mut program.routines[at].body);
         let frame = crate::alias::Frame::of(program, &program.routines[at]);
         crate::loops::privatise(&frame, &mut body);
+        leave_turns(&mut body);
         program.routines[at].body = body;
+    }
+}
+
+/// Loops that are short, now that their counters are private, take no turns.
+fn leave_turns(block: &mut [Statement]) {
+    for statement in block {
+        statement.kind.blocks_mut().into_iter().for_each(|it| leave_turns(it));
+        if let StatementKind::For(it) = &mut statement.kind
+            && it.takes_turns()
+            && it.is_short()
+        {
+            it.body.remove(0);
+        }
     }
 }
