@@ -135,9 +135,25 @@ impl Pair {
             for outputs in &mut self.outputs {
                 outputs.retain(|it| has_counterpart(it) || is_named(it, &named));
             }
-            self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         }
+        self.drop_unread();
+        self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         self.compared_bytes = Comparison::of(&self.sides, &self.compared);
+    }
+
+    /// A DN of Logix that nothing reads, and that is not compared, says nothing.
+    fn drop_unread(&mut self) {
+        let unread = matching::unread_done(&self.sides, &self.outputs);
+        let compared = &self.compared;
+        for outputs in &mut self.outputs {
+            outputs.retain(|it| compared.contains(it) || !unread.contains(it));
+        }
+    }
+
+    /// Whether what says that a counter is done is looked at.
+    pub fn shows_done(&self, counter: usize) -> bool {
+        let is_done = |it: &Matched| (0..2).any(|side| matching::is_done_of_logix(&self.sides, side, *it));
+        self.outputs[counter].iter().any(is_done)
     }
 
     pub fn scalar(&self, side: usize, at: usize) -> &Scalar {

@@ -4,6 +4,8 @@
 pub mod scalar;
 pub mod walked;
 
+pub mod ranges;
+
 pub mod bounds;
 pub mod dependency;
 pub mod facts;

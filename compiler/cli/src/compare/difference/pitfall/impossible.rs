@@ -24,6 +24,8 @@ pub struct Use {
     pub reset_depends: bool,
     /// Both systems keep, or lose, the same of it.
     pub kept_alike: bool,
+    /// DN of Logix is read, or compared.
+    pub shows_done: bool,
 }
 
 /// How both programs use each counter.
@@ -53,6 +55,7 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
             resets: a.resets || b.resets,
             reset_depends: a.reset_depends || b.reset_depends,
             kept_alike: kept(0) == kept(1),
+            shows_done: pair.shows_done(at),
         }
     };
     (0..pair.counters.len()).map(each).collect()
@@ -80,8 +83,10 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),
         3 => no_down.or_else(|| (goes_below(a) == goes_below(b)).then_some("both systems do the same at 0")),
         4 => no_logix
-            .or((!instances.iter().any(|it| it.has(PinRole::Down) && !it.has(PinRole::Up))).then_some("it is no CTD")),
-        5 | 13 => no_logix,
+            .or((!instances.iter().any(|it| it.has(PinRole::Down) && !it.has(PinRole::Up))).then_some("it is no CTD"))
+            .or((!usage.shows_done && !usage.resets).then_some("nothing reads its DN, or loads it")),
+        5 => no_logix,
+        13 => no_logix.or((!usage.shows_done).then_some("nothing reads its DN")),
         6 => no_logix.and(no_cscape).or((!usage.resets).then_some("nothing resets or loads it")),
         7 => (a.repr != b.repr || same_kind || !parts(Family::Logix))
             .then_some("both systems do the same at a limit, or have other limits"),
