@@ -94,23 +94,27 @@ fn goes_below(rules: Rules) -> bool {
     matches!(rules.family, Family::Iec | Family::S7) && rules.least < 0
 }
 
-/// Of a COUNTER, and of CTUD of an FBD_COUNTER.
+/// Of a COUNTER, and of CTUD of an FBD_COUNTER. ACC turns round at the limits of DINT, and DN is then what it would be of a
+/// count that had not: OV and UN say so.
 fn logix(form: Form) -> (String, &'static str) {
-    let count = |step: &str, rung: &str| {
+    let count = |rung: &str, step: &str, turns: &str, full: &str| {
         format!(
-            "rung := {rung}; IF rung THEN IF NOT before THEN n := n {step} 1; END_IF; full := n >= preset; END_IF; before := rung;` \
-             in place of its instruction, and in place of RES `IF clear THEN n := 0; full := FALSE; before := FALSE; END_IF;"
+            "rung := {rung}; IF rung THEN IF NOT before THEN {step} {turns} END_IF; full := {full}; END_IF; before := rung;` in \
+             place of its instruction, and in place of RES `IF clear THEN n := 0; full := FALSE; before := FALSE; turned := FALSE; \
+             END_IF;"
         )
     };
-    match form {
-        Form::Up => (count("+", "sensor"), "`full` for DN"),
-        Form::Down => (count("-", "pulse"), "`full` for DN"),
-        Form::UpDown => (
-            "eu := sensor AND NOT bu; bu := sensor; ed := pulse AND NOT bd; bd := pulse; \
-             IF clear THEN n := 0; full := FALSE; bu := FALSE; bd := FALSE; ELSE IF eu THEN n := n + 1; END_IF; \
-             IF ed THEN n := n - 1; END_IF; full := n >= preset; END_IF;"
-                .to_owned(),
-            "`full` for DN",
-        ),
-    }
+    let text = match form {
+        Form::Up => count("sensor", "n := n + 1;", "turned := turned OR n < -2147483647;", "turned OR n >= preset"),
+        Form::Down => {
+            count("pulse", "n := n - 1;", "turned := turned OR n = 2147483647;", "NOT turned AND n >= preset")
+        }
+        Form::UpDown => "eu := sensor AND NOT bu; bu := sensor; ed := pulse AND NOT bd; bd := pulse; \
+             IF clear THEN n := 0; full := FALSE; bu := FALSE; bd := FALSE; over := FALSE; under := FALSE; ELSE \
+             IF eu THEN n := n + 1; IF n < -2147483647 THEN over := NOT under; under := FALSE; END_IF; END_IF; \
+             IF ed THEN n := n - 1; IF n = 2147483647 THEN under := NOT over; over := FALSE; END_IF; END_IF; \
+             full := over OR NOT under AND n >= preset; END_IF;"
+            .to_owned(),
+    };
+    (text, "`full` for DN")
 }

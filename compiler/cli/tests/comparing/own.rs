@@ -2,8 +2,8 @@
 //! of the counter's call, and by all reachable states the program is then equal to the original, on every system, around 0
 //! and at both limits of the count.
 
+use super::programs::{Folder, command, printed};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 /// A system, and what decides the rules that its documents leave open.
 #[derive(Clone, Copy)]
@@ -146,7 +146,7 @@ impl Case {
         let [first, second] = outputs;
         let width = if self.from.limits == DINT || self.from.limits[1] > 32767 { "DINT" } else { "INT" };
         format!(
-            "PROGRAM p\n{}\n{kept} n : {width} := {}; full, empty : BOOL; END_VAR\n{edges} before, bu, bd : BOOL{initial}; END_VAR\n\
+            "PROGRAM p\n{}\n{kept} n : {width} := {}; full, empty, turned, over, under : BOOL; END_VAR\n{edges} before, bu, bd : BOOL{initial}; END_VAR\n\
              VAR edge, eu, ed, rung, first_ : BOOL; END_VAR {kept} loaded : BOOL; END_VAR\n\
              count := n; {}\n{}\ncount := n; first := {first}; second := {second};\nEND_PROGRAM\n",
             self.inputs(),
@@ -158,7 +158,7 @@ impl Case {
 }
 
 fn folder(case: &Case) -> PathBuf {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_own").join(case.name());
+    let path = Folder("own").path().join(case.name());
     std::fs::create_dir_all(&path).expect("a folder");
     let settings = ["s7-ld = \"level\"", "openplc4-cd-edge = \"falling\"", "ctu-stop-at-pv = false"];
     let word = |it: &str| it.split(' ').next().map(str::to_owned);
@@ -171,11 +171,10 @@ fn folder(case: &Case) -> PathBuf {
 }
 
 fn compare(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").args(arguments).args(["-A", "warnings", "--vars", "count,first,second"]);
-    let output = command.current_dir(folder).env("NO_COLOR", "1").output().expect("it starts");
-    let text = [output.stdout, output.stderr].map(|it| String::from_utf8_lossy(&it).into_owned()).concat();
-    (output.status.code(), text)
+    let mut command = command();
+    command.args(arguments).args(["-A", "warnings", "--vars", "count,first,second"]);
+    let output = command.current_dir(folder).output().expect("it starts");
+    (output.status.code(), printed(&output))
 }
 
 /// The statements that are advised for a counter, on a move to a system where it differs.
@@ -185,6 +184,8 @@ fn statements(case: &Case, folder: &Path) -> String {
     let systems = FROM.into_iter().filter(|it| it.dialect != case.from.dialect && it.has(case.block));
     for from in systems {
         let other = Case { from, block: case.block, start: 0 }.original();
+        // DN of an FBD_COUNTER is one for both ways.
+        let other = if case.is_logix() { other.replace("c.QD", "c.QU") } else { other };
         let other = if case.from.dialect == "codesys" { other.replace("-1..2", "0..2") } else { other };
         std::fs::write(folder.join("other.st"), other).expect("a program");
         let arguments = [
