@@ -224,8 +224,7 @@ big := n + k; wide := big > 40000;";
         for shown in ["hit", "c.Q", "b"] {
             let (code, text) = compare(&path, from, to, &["--vars", shown]);
             assert_eq!(code, Some(1), "{text}");
-            let reason =
-                format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path);
+            let reason = format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path);
             assert!(text.contains(&reason) && !text.contains("(variable, "), "{text}");
         }
     }

@@ -64,7 +64,7 @@ pub const BLOCKS: &[Advice] = &[
         &[15],
         &[Openplc],
         &[Iec, Siemens],
-        "Count down only above 0: `e(CLK := sensor); c(CD := e.Q AND c.CV > 0, …)`.",
+        "Count down only above 0: `e(CLK := pulse); c(CD := e.Q AND c.CV > 0, …)`.",
     )
     .of(&[Down]),
     advice(
@@ -337,8 +337,8 @@ const EDGE: &str = "Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := 
 
 const EDGE_DOWN: &str = "Feed the counter from an R_TRIG: `e(CLK := pulse); c(CD := e.Q, …)`.";
 
-const GREAT_PRESET: &str = "Let PV be the greatest value of its type (32767 of an INT), and compare the count yourself, \
-     right after the call: `full := c.CV >= preset;`, with `full` in place of Q.";
+const GREAT_PRESET: &str = "Let PV be the greatest value of its type (32767 of an INT), and compare the count yourself: \
+     `c(CU := sensor, R := clear, PV := 32767); full := c.CV >= preset;`, with `full` in place of Q.";
 
 const ABOVE_0: &str = "Put the edge first: `e(CLK := pulse); c(CD := e.Q AND c.CV > 0, …)`.";
 
