@@ -212,6 +212,9 @@ impl Judged<'_> {
         for other in self.others {
             let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
         }
+        if matches!(self.verdict, Verdict::Differs { .. }) {
+            text.push_str(" What to do is for the settings of that verdict.");
+        }
         text.push('\n');
         text
     }
