@@ -31,6 +31,17 @@ fn what_one_system_keeps_is_blamed_and_not_the_counter_that_it_feeds() {
     let (code, text) = compare(&ours, ["logix", "openplc"], &["--against", &theirs, "--vars", "o"]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("Trap 11 (`m`): ") && !text.contains("Trap 5 "), "{text}");
+    // A counter that one program declares and never calls is not to blame.
+    let declared = format!("{PULSES} VAR RETAIN c : CTU; n : INT; END_VAR VAR b, m : BOOL; END_VAR");
+    let theirs = program(
+        "counted_otherwise",
+        &declared,
+        &format!("{EDGE} IF b AND n < 3 THEN n := n + 1; END_IF; o := n >= 2;"),
+    );
+    let (code, text) = compare(&ours, ["logix", "openplc"], &["--against", &theirs, "--vars", "o"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Trap 11 (`m`): "), "{text}");
+    assert!(text.contains(": one of the two programs never calls it") && !text.contains("trap 15."), "{text}");
     // An edge flag that starts otherwise is another program.
     let declared = format!("{PULSES} VAR RETAIN c : CTU; END_VAR VAR b : BOOL; m : BOOL := TRUE; END_VAR");
     let theirs = program("other_edge", &declared, &body);

@@ -28,6 +28,9 @@ pub fn seen(pair: &Pair, at: usize, event: Option<Event>, habits: Habits) -> Opt
 }
 
 fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event>, habits: Habits) -> Option<Case> {
+    if !habits.is_of_both {
+        return None;
+    }
     let instances = pair.instances(at);
     let of = |states: [&[u8]; 2]| level([0, 1].map(|side| pins(instances[side], states[side])));
     let only_down = |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up);
@@ -184,10 +187,18 @@ fn kept_by_one(pair: &Pair, rows: &[Row], at: usize, relevant: &Relevant) -> Opt
         keeps[0] != keeps[1] && value(before[side]) != value(pair.start()[side])
     };
     let all = pair.matched(|it| matches!(it.role, Role::Variable)).into_iter();
-    let decides = all.filter(|it| is_kept(it) && relevant.has(pair.declared(0, *it), &HashSet::new()));
-    // What is itself compared is made anew in the scan, as a rule.
-    let is_compared = |it: &Matched| relevant.found.contains(it);
-    decides.min_by_key(is_compared).map(|it| pair.path(it).to_owned())
+    let decides: Vec<Matched> =
+        all.filter(|it| is_kept(it) && relevant.has(pair.declared(0, *it), &HashSet::new())).collect();
+    // What another of them decides is made anew in the scan.
+    let follows = |it: &Matched| {
+        let others = decides.iter().filter(|other| pair.declared(0, **other) != pair.declared(0, *it));
+        let decided = |other: &Matched| {
+            let found = pair.declared(0, *other).map(|other| relevant.dependencies.follow(other));
+            found.zip(pair.declared(0, *it)).is_some_and(|(found, own)| found.contains(&own))
+        };
+        others.filter(|other| decided(other)).count()
+    };
+    decides.iter().min_by_key(|it| follows(it)).map(|it| pair.path(*it).to_owned())
 }
 
 /// What the differences at the end depend on.

@@ -38,6 +38,8 @@ pub struct Habits {
     pub feeds_itself: bool,
     /// What it counts depends on its own count.
     pub guards_itself: bool,
+    /// Both programs call or write it: what one alone has says nothing of the two systems.
+    pub is_of_both: bool,
 }
 
 /// All that is known of a counter that differs. The first of two is the system the program comes

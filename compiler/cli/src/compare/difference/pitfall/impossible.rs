@@ -15,6 +15,8 @@ use staunch_runtime::{Family, PinRole};
 pub struct Use {
     /// Something calls or writes it on one side at least.
     pub is_used: bool,
+    /// And on one side nothing does.
+    pub is_of_one: bool,
     /// Its preset is the same constant in every call on both sides.
     pub constant_preset: bool,
     pub habits: Habits,
@@ -47,10 +49,12 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
         };
         Use {
             is_used: a.is_used || b.is_used,
+            is_of_one: a.is_used != b.is_used,
             constant_preset: presets.len() == 1 && presets[0].is_some(),
             habits: Habits {
                 feeds_itself: a.feeds_itself || b.feeds_itself,
                 guards_itself: a.count_depends || b.count_depends,
+                is_of_both: a.is_used && b.is_used,
             },
             resets: a.resets || b.resets,
             reset_depends: a.reset_depends || b.reset_depends,
@@ -78,6 +82,7 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
     let no_up = (!has(PinRole::Up)).then_some("it does not count up");
     match pitfall.number() {
         _ if !usage.is_used => Some("it is never called"),
+        _ if usage.is_of_one => Some("one of the two programs never calls it"),
         1 => no_cscape,
         2 | 3 if parts_openplc => Some("what OPENPLC does is trap 15"),
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),

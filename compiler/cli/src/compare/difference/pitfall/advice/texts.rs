@@ -210,8 +210,8 @@ pub const FALLING: &[Advice] = &[
         &[5, 6, 17],
         &[Openplc4],
         &[Logix],
-        "Count down as the input falls, above 0: `edge := before AND NOT pulse AND c.ACC > 0; before := pulse; c.CD := FALSE; \
-         CTD(c, edge);`, load after the CTD: `IF load THEN c.ACC := c.PRE; END_IF`, and ask for `c.ACC <= 0` in place of Q.",
+        "Count down as the input falls, above 0: `edge := before AND NOT pulse AND c.ACC > 0; before := pulse; c.PRE := preset; \
+         c.CD := FALSE; CTD(c, edge); IF load THEN c.ACC := c.PRE; END_IF; empty := c.ACC <= 0;`, with `empty` in place of Q.",
     )
     .of(&[Down]).where_it(false),
 ];
@@ -304,24 +304,26 @@ pub const TO_LOGIX: &[Advice] = &[
         &[3],
         &[Cscape],
         &[Logix],
-        "Count in each scan, above 0: `c.CD := FALSE; CTD(c, pulse AND c.ACC > 0);`.",
+        "Count in each scan, above 0, and compare the count yourself: `c.PRE := preset; c.CD := FALSE; \
+         CTD(c, pulse AND c.ACC > 0); IF load THEN c.ACC := c.PRE; END_IF; empty := c.ACC = 0;`, with `empty` in place of Q.",
     ).of(&[Down]),
     advice(
         "between 0 and the preset on Logix",
         &[15],
         &[Openplc],
         &[Logix],
-        "Count only below the preset, and down only above 0: `edge := sensor AND NOT before AND c.ACC < c.PRE; before := sensor; \
-         c.CU := FALSE; CTU(c, edge);`, with CTD `c.ACC > 0` and `c.CD`.",
-    )
-    .of(&[Up, Down]),
+        "Count only below the preset: `edge := sensor AND NOT before AND c.ACC < preset; before := sensor; c.PRE := preset; \
+         c.CU := FALSE; CTU(c, edge); RES(c, clear); full := c.ACC >= c.PRE;`, with `full` in place of Q.",
+    ),
+    advice("between 0 and the preset on Logix", &[15], &[Openplc], &[Logix], ABOVE_0_ON_LOGIX).of(&[Down]),
     advice("edge", &[12], NOT_CSCAPE, &[Cscape], EDGE),
     advice(
         "before the limit",
         &[7],
         &[Iec, Siemens, Openplc, Openplc4],
         &[Logix],
-        "Stop the count before its limit: `edge := pulse AND NOT before AND c.ACC < 2147483647; before := pulse;`.",
+        "Stop the count before its limit: `edge := sensor AND NOT before AND c.ACC < 2147483647; before := sensor; \
+         c.PRE := preset; c.CU := FALSE; CTU(c, edge); RES(c, clear); full := c.ACC >= c.PRE;`, with `full` in place of Q.",
     ),
     advice(
         "limit of the old type",
@@ -329,7 +331,8 @@ pub const TO_LOGIX: &[Advice] = &[
         NOT_CSCAPE,
         &[Logix],
         "Stop the count where the old type did, at 32767 of an INT or 65535 of a WORD: \
-         `edge := pulse AND NOT before AND c.ACC < 32767; before := pulse; c.CU := FALSE; CTU(c, edge);`.",
+         `edge := sensor AND NOT before AND c.ACC < 32767; before := sensor; c.PRE := preset; c.CU := FALSE; CTU(c, edge); \
+         RES(c, clear); full := c.ACC >= c.PRE;`, with `full` in place of Q.",
     ),
 ];
 
@@ -342,8 +345,8 @@ const GREAT_PRESET: &str = "Let PV be the greatest value of its type (32767 of a
 
 const ABOVE_0: &str = "Put the edge first: `e(CLK := pulse); c(CD := e.Q AND c.CV > 0, …)`.";
 
-const ABOVE_0_ON_LOGIX: &str =
-    "Put the edge first: `edge := pulse AND NOT before AND c.ACC > 0; before := pulse; c.CD := FALSE; CTD(c, edge);`.";
+const ABOVE_0_ON_LOGIX: &str = "Put the edge first, and count above 0: `edge := pulse AND NOT before AND c.ACC > 0; before := pulse; c.PRE := preset; \
+     c.CD := FALSE; CTD(c, edge); IF load THEN c.ACC := c.PRE; END_IF; empty := c.ACC <= 0;`, with `empty` in place of Q.";
 
 const FELL: &str = "Count down as the input falls, above 0: `fell := before AND NOT pulse; before := pulse; c(CD := fell AND c.CV > 0, …)`.";
 
