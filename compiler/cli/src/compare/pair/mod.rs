@@ -17,7 +17,8 @@ mod rest;
 pub use scan::{Faults, Input, Matched, Row, Step};
 pub use side::Side;
 
-use crate::compare::program::scalar::{self, Role, Scalar};
+use crate::compare::program::held;
+use crate::compare::program::scalar::{Role, Scalar};
 use comparison::Comparison;
 use passing::Passed;
 use settled::Settled;
@@ -202,7 +203,7 @@ impl Pair {
     /// The first value of an input, as a trace shows it.
     pub fn shown(&self, input: &Input) -> String {
         let ty = self.scalar(0, input.scalars[0]).ty;
-        input.texts.first().map_or_else(|| scalar::spell(&self.sides[0].program, ty, input.initial), Chars::to_string)
+        input.texts.first().map_or_else(|| held::spell(&self.sides[0].program, ty, input.initial), Chars::to_string)
     }
 
     /// The inputs' values before anything sets them.

@@ -2,7 +2,8 @@
 
 use super::comparison::Comparison;
 use super::{Matched, Pair};
-use crate::compare::program::scalar::{self, Instance, Role};
+use crate::compare::program::held;
+use crate::compare::program::scalar::{Instance, Role};
 
 impl Pair {
     /// Whether every counter shows the same on both sides.
@@ -38,7 +39,7 @@ impl Pair {
         (0..2).all(|side| {
             let preset = self.pin(at, side, "PT").map(|it| &self.sides[side].scalars.all[it]);
             let program = &self.sides[side].program;
-            let value = preset.and_then(|it| scalar::number(program, it, states[side]));
+            let value = preset.and_then(|it| held::number(program, it, states[side]));
             value.is_none_or(|it| it <= 0)
         })
     }

@@ -2,6 +2,9 @@
 //! counters; and what two programs compute in other types.
 
 pub mod scalar;
+
+pub mod held;
+
 pub mod walked;
 
 pub mod ranges;

@@ -1,9 +1,6 @@
 //! The scalars of a program's state, by paths that two systems share.
 
 mod shared;
-mod value;
-
-pub use value::{equal, number, show, spell};
 
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::{ArrayId, BlockId, FieldId, HELD_PROGRAM, Program, Retain, Section, StructId, Type, Value};
@@ -135,7 +132,7 @@ impl Scalars {
     }
 
     /// What a reference leads to, and how many bytes into it: two programs number and place their variables for themselves.
-    fn denoted(&self, bytes: &[u8]) -> Option<(&Scalar, usize)> {
+    pub(super) fn denoted(&self, bytes: &[u8]) -> Option<(&Scalar, usize)> {
         let bits = u64::from_ne_bytes(bytes.try_into().ok()?);
         let address = usize_of(Reference::from_bits(bits).address.into());
         let offset = address.checked_sub(usize_of(ORIGIN.into()))?;
@@ -328,6 +325,14 @@ impl Instance {
     /// The value of the pin with a role.
     pub fn pin(&self, role: PinRole, state: &[u8]) -> Option<i128> {
         let pin = self.block.info().pin_for(role)?;
-        value::as_number(Value::read(pin.repr(), &state[self.offset + pin.offset..]))
+        as_number(Value::read(pin.repr(), &state[self.offset + pin.offset..]))
+    }
+}
+
+/// A BOOL counts as 0 or 1.
+pub(super) fn as_number(value: Value) -> Option<i128> {
+    match value {
+        Value::Bool(it) => Some(i128::from(it)),
+        other => other.as_integer(),
     }
 }

@@ -1,20 +1,12 @@
 //! What a scalar holds: as a number, as a text, and whether two hold the same.
 
-use super::{Scalar, Scalars};
+use super::scalar::{Scalar, Scalars, as_number};
 use staunch_ir::layout::usize_of;
 use staunch_ir::{Program, Type, Value};
 
 /// What a scalar holds, where that is a number.
 pub fn number(program: &Program, scalar: &Scalar, state: &[u8]) -> Option<i128> {
     as_number(Value::read(program.repr(scalar.ty)?, &state[scalar.offset..]))
-}
-
-/// A BOOL counts as 0 or 1.
-pub(super) fn as_number(value: Value) -> Option<i128> {
-    match value {
-        Value::Bool(it) => Some(i128::from(it)),
-        other => other.as_integer(),
-    }
 }
 
 /// Whether two systems hold the same value, by its number and not by its bits; a reference by what it leads to.
