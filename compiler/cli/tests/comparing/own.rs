@@ -200,9 +200,9 @@ fn statements(case: &Case, folder: &Path) -> String {
             "calm.txt",
         ];
         let (_, text) = compare(folder, &arguments);
-        let advice =
+        let mut advice =
             text.lines().filter_map(|it| it.split_once("In place of each call, count in variables of your own, "));
-        if let Some((_, advice)) = advice.last() {
+        if let Some((_, advice)) = advice.next_back() {
             let statements: Vec<&str> = advice.split('`').filter(|it| it.contains(":=")).collect();
             return statements.join(" ");
         }
