@@ -26,8 +26,9 @@ impl Pitfall {
         let is_of_counting = !Self::OF_MORE.contains(&self);
         let mut texts: Vec<&str> = said(self.number(), from, to, counting).map(|it| it.text).collect();
         texts.dedup();
-        if is_of_counting && (texts.is_empty() || counting.is_partial) {
-            return own::text(counting).unwrap_or_else(|| OWN.to_owned());
+        if texts.is_empty() || is_of_counting && counting.is_partial {
+            let own = own::text(counting).filter(|_| is_of_counting);
+            return own.unwrap_or_else(|| OWN.to_owned());
         }
         let text = texts.join(" ");
         match to {
