@@ -3,7 +3,7 @@
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::apart::Declared;
 use crate::compare::program::dependency::Dependencies;
-use crate::compare::program::scalar;
+use crate::compare::program::held;
 use crate::compare::program::walked::{Name, Walked};
 use staunch_ir::{Expr, Program, Routine, RoutineId, StatementKind, visit};
 
@@ -22,7 +22,7 @@ pub fn reason(pair: &Pair, row: &Row, variable: Matched) -> Option<String> {
         let decides = |it: &&Declared| dependencies.follow(**it).contains(&declared);
         let was_false = |it: &&Declared| {
             let mut all = pair.sides[side].scalars.all.iter().filter(|scalar| scalar.field == Some(**it));
-            all.any(|it| scalar::number(program, it, &row.states[side]) == Some(0))
+            all.any(|it| held::number(program, it, &row.states[side]) == Some(0))
         };
         let own = stops[side].iter().filter(|it| !others(it));
         let enable = own.filter(decides).find(was_false)?;

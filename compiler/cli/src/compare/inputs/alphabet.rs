@@ -11,8 +11,10 @@ use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
 use staunch_runtime::StringType;
 use std::collections::HashSet;
 
-/// Combinations of inputs that are tried in every scan of an exhaustive search.
-const MAX_VECTORS: usize = 512;
+/// Combinations of inputs that are tried in every scan of an exhaustive search, if it is not over by then.
+const FEW_VECTORS: usize = 512;
+/// And in every scan of another one, where that has seen every state that these lead to.
+const MAX_VECTORS: usize = 16_384;
 /// Values of one input, besides those that its comparisons ask for.
 const MAX_VALUES: usize = 64;
 /// A type or subrange of at most this many values is tried whole.
@@ -25,6 +27,8 @@ pub struct Alphabet {
     pub choices: Vec<Choice>,
     /// Combinations, those that change little first.
     pub vectors: Vec<Vec<Value>>,
+    /// How many of them come first in a search.
+    pub few: usize,
     /// Whether all combinations are among them.
     pub complete: bool,
 }
@@ -38,7 +42,8 @@ impl Alphabet {
         };
         let choices: Vec<Choice> = pair.inputs.iter().enumerate().map(choice).collect();
         let (vectors, complete) = vectors(&choices, assumptions);
-        Self { choices, vectors, complete }
+        let few = vectors.len().min(FEW_VECTORS);
+        Self { choices, vectors, few, complete }
     }
 
     /// Whether nothing that the inputs can do is left out.
@@ -342,8 +347,8 @@ fn vectors(choices: &[Choice], assumptions: &Assumptions) -> (Vec<Vec<Value>>, b
         };
         found = found.iter().flat_map(with).collect();
         found.sort_by_key(|it| it.0);
-        complete &= found.len() <= MAX_VECTORS * 8;
-        found.truncate(MAX_VECTORS * 8);
+        complete &= found.len() <= MAX_VECTORS * 2;
+        found.truncate(MAX_VECTORS * 2);
     }
     found.retain(|it| assumptions.allow(&it.1));
     complete &= found.len() <= MAX_VECTORS;

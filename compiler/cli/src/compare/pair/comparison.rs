@@ -2,7 +2,7 @@
 
 use super::scan::Matched;
 use super::side::Side;
-use crate::compare::program::scalar;
+use crate::compare::program::held;
 use staunch_ir::Type;
 
 /// Bytes whose equality is that of values; and scalars that the two sides hold in different types.
@@ -72,5 +72,5 @@ impl Run {
 pub fn equal(sides: &[Side; 2], [a, b]: Matched, states: [&[u8]; 2]) -> bool {
     let programs = [&sides[0].program, &sides[1].program];
     let all = [&sides[0].scalars, &sides[1].scalars];
-    scalar::equal(programs, all, [&all[0].all[a], &all[1].all[b]], states)
+    held::equal(programs, all, [&all[0].all[a], &all[1].all[b]], states)
 }

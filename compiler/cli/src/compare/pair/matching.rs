@@ -3,6 +3,8 @@
 use super::scan::{Input, Matched};
 use super::side::Side;
 use crate::compare::program::scalar::{Instance, Role, Scalar};
+use crate::compare::program::usage;
+use crate::compare::program::walked::Name;
 use staunch_runtime::{Family, PinRole};
 use std::collections::{HashMap, HashSet};
 
@@ -34,19 +36,44 @@ pub fn outputs(sides: &[Side; 2], blocks: &[Matched]) -> Vec<Vec<Matched>> {
 }
 
 /// Whether it is Q of a CTD beside DN of Logix: each says another thing.
-pub fn is_done_of_down(sides: &[Side; 2], [ours, theirs]: Matched) -> bool {
-    let block = |side: usize, at: usize| match sides[side].scalars.all[at].role {
+pub fn is_done_of_down(sides: &[Side; 2], matched: Matched) -> bool {
+    let is_down = |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up);
+    block_of(sides, 0, matched).is_some_and(is_down) && is_done_of_logix(sides, 1, matched)
+}
+
+/// Whether it is DN of a counter of Logix.
+pub fn is_done_of_logix(sides: &[Side; 2], side: usize, matched: Matched) -> bool {
+    block_of(sides, side, matched).is_some_and(|tag| {
+        let info = tag.block.info();
+        let at = sides[side].scalars.all[matched[side]].offset;
+        info.family == Family::Logix && info.pin_for(PinRole::Done).is_some_and(|it| at == tag.offset + it.offset)
+    })
+}
+
+/// The outputs of counters that are DN of Logix, which nothing reads there.
+pub fn unread_done(sides: &[Side; 2], outputs: &[Vec<Matched>]) -> HashSet<Matched> {
+    let mut unread = HashSet::new();
+    for side in 0..2 {
+        let done = || outputs.iter().flatten().filter(|it| is_done_of_logix(sides, side, **it));
+        if done().next().is_none() {
+            continue;
+        }
+        let found = usage::of(&sides[side].program);
+        let is_read = |it: &&Matched| {
+            let field = block_of(sides, side, **it).and_then(|it| it.field);
+            field.is_none_or(|(owner, field)| found.get(&Name::Field(owner, field)).is_some_and(|it| it.reads_done))
+        };
+        unread.extend(done().filter(|it| !is_read(it)).copied());
+    }
+    unread
+}
+
+/// The block that an output is of.
+fn block_of(sides: &[Side; 2], side: usize, matched: Matched) -> Option<&Instance> {
+    match sides[side].scalars.all[matched[side]].role {
         Role::Output(number) => sides[side].scalars.blocks.get(number),
         Role::Input | Role::Variable | Role::Hidden => None,
-    };
-    let (Some(counter), Some(tag)) = (block(0, ours), block(1, theirs)) else { return false };
-    let is_done = tag
-        .block
-        .info()
-        .pin_for(PinRole::Done)
-        .is_some_and(|pin| sides[1].scalars.all[theirs].offset == tag.offset + pin.offset);
-    let only_down = counter.has(PinRole::Down) && !counter.has(PinRole::Up);
-    only_down && is_done && tag.block.info().family == Family::Logix
+    }
 }
 
 /// Whether a name, as a user writes it, is that of a scalar or of what it is in. It may begin with the one PROGRAM, as it

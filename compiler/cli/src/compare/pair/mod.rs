@@ -8,16 +8,20 @@ mod side;
 
 mod comparison;
 mod exchange;
+mod key;
 mod matching;
+mod parting;
 pub mod passing;
+mod rest;
 
 pub use scan::{Faults, Input, Matched, Row, Step};
 pub use side::Side;
 
-use crate::compare::program::scalar::{self, Instance, Role, Scalar};
+use crate::compare::program::held;
+use crate::compare::program::scalar::{Role, Scalar};
 use comparison::Comparison;
-use passing::{Passed, Passing};
-use settled::{Known, Settled};
+use passing::Passed;
+use settled::Settled;
 use staunch_frontend::rules::{SUBRANGE, is_followed};
 use staunch_host::{Bookmark, Event, Machine, Snapshot};
 use staunch_ir::{Chars, FieldId, StructId, Value};
@@ -135,9 +139,25 @@ impl Pair {
             for outputs in &mut self.outputs {
                 outputs.retain(|it| has_counterpart(it) || is_named(it, &named));
             }
-            self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         }
+        self.drop_unread();
+        self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         self.compared_bytes = Comparison::of(&self.sides, &self.compared);
+    }
+
+    /// A DN of Logix that nothing reads, and that is not compared, says nothing.
+    fn drop_unread(&mut self) {
+        let unread = matching::unread_done(&self.sides, &self.outputs);
+        let compared = &self.compared;
+        for outputs in &mut self.outputs {
+            outputs.retain(|it| compared.contains(it) || !unread.contains(it));
+        }
+    }
+
+    /// Whether what says that a counter is done is looked at.
+    pub fn shows_done(&self, counter: usize) -> bool {
+        let is_done = |it: &Matched| (0..2).any(|side| matching::is_done_of_logix(&self.sides, side, *it));
+        self.outputs[counter].iter().any(is_done)
     }
 
     pub fn scalar(&self, side: usize, at: usize) -> &Scalar {
@@ -183,7 +203,7 @@ impl Pair {
     /// The first value of an input, as a trace shows it.
     pub fn shown(&self, input: &Input) -> String {
         let ty = self.scalar(0, input.scalars[0]).ty;
-        input.texts.first().map_or_else(|| scalar::spell(&self.sides[0].program, ty, input.initial), Chars::to_string)
+        input.texts.first().map_or_else(|| held::spell(&self.sides[0].program, ty, input.initial), Chars::to_string)
     }
 
     /// The inputs' values before anything sets them.
@@ -275,67 +295,6 @@ impl Pair {
         })
     }
 
-    /// Looks for counts of which many are alike, by what is compared now.
-    pub fn settle_counts(&mut self) {
-        let Self { sides, inputs, compared, counters, .. } = &*self;
-        self.settled = Settled::of(Known { sides, inputs, compared, counters });
-        self.open = vec![false; self.counters.len()];
-    }
-
-    /// What decides all that is to come, as a number: two states with one key behave alike under
-    /// the same inputs.
-    pub fn key(&mut self, ages: &[u8]) -> u128 {
-        self.settled.clear();
-        self.key_of(ages)
-    }
-
-    /// The same of states in which counts past all that they are compared with are one.
-    pub fn settled_key(&mut self, ages: &[u8]) -> u128 {
-        let states = self.sides.each_ref().map(Side::state);
-        self.are_settled |= self.settled.look(states, &mut self.open);
-        self.key_of(ages)
-    }
-
-    /// Goes on with counts that are just past all that they are compared with, in place of those of the last key that are
-    /// further; whether there are any.
-    pub fn move_counts(&mut self) -> bool {
-        for (side, offset, value) in self.settled.moved() {
-            self.sides[*side].write(*offset, *value);
-        }
-        !self.settled.moved().is_empty()
-    }
-
-    fn key_of(&mut self, ages: &[u8]) -> u128 {
-        let mut all = std::mem::take(&mut self.rest);
-        all.clear();
-        for (number, side) in self.sides.iter_mut().enumerate() {
-            self.scratch.clear();
-            self.scratch.extend_from_slice(side.machine.state());
-            let state = self.scratch.as_mut_slice();
-            for input in &self.inputs {
-                let scalar = &side.scalars.all[input.scalars[number]];
-                state[scalar.offset..scalar.offset + scalar.size].fill(0);
-            }
-            let now = side.drive.next();
-            side.timers.iter().for_each(|it| it.settle(state, now));
-            self.settled.write(number, state);
-            let idle = self.remaining.get(&self.passed).map(|it| &it.idle[number]);
-            idle.into_iter().flatten().for_each(|it| state[it.clone()].fill(0));
-            all.extend_from_slice(&side.digest.of(state).to_ne_bytes());
-            if side.reads_clock {
-                all.extend_from_slice(&now.to_ne_bytes());
-            }
-        }
-        for (wait, fresh) in self.sides.iter().flat_map(|it| it.drive.phases()) {
-            all.extend_from_slice(&wait.to_ne_bytes());
-            all.push(u8::from(fresh));
-        }
-        all.extend(self.passed.iter().flat_map(|it| it.to_ne_bytes()));
-        all.extend_from_slice(ages);
-        self.rest = all;
-        normal::hash(&self.rest)
-    }
-
     fn equal(&self, matched: Matched, states: [&[u8]; 2]) -> bool {
         comparison::equal(&self.sides, matched, states)
     }
@@ -347,36 +306,6 @@ impl Pair {
     /// Whether the compared values, or how the scan ended, differ.
     pub fn differs(&self, faults: Faults) -> bool {
         self.faults_differ(faults) || !self.all_equal(&self.compared_bytes)
-    }
-
-    /// Whether anything differs that does not follow from accepted findings seen since the start; and whether
-    /// nothing is left to compare.
-    pub fn differs_beyond(&mut self, passing: &Passing, seen: &Passed, faults: Faults) -> (bool, bool) {
-        self.passed.resize(self.passed.len().max(seen.len()), 0);
-        self.passed.iter_mut().zip(seen).for_each(|(all, it)| *all |= it);
-        if !self.remaining.contains_key(&self.passed) {
-            let remaining = self.remaining_compared(passing);
-            let comparison = Comparison::of(&self.sides, &remaining);
-            let idle = [0, 1].map(|side| passing.idle_bytes(side, &self.passed));
-            let known = Remaining { is_empty: remaining.is_empty(), comparison, idle };
-            self.remaining.insert(self.passed.clone(), known);
-        }
-        let Remaining { is_empty, comparison, .. } = &self.remaining[&self.passed];
-        if self.faults_differ(faults) {
-            let accepted = (0..2).all(|side| faults[side].is_none() || passing.accepts_fault(side));
-            return (!accepted, *is_empty);
-        }
-        (!self.all_equal(comparison), *is_empty && passing.is_faultless)
-    }
-
-    /// What is still compared after the accepted findings that have been seen.
-    pub fn remaining_compared(&self, passing: &Passing) -> Vec<Matched> {
-        self.compared.iter().copied().filter(|it| passing.remains(*it, &self.passed)).collect()
-    }
-
-    /// Of these, the outputs that may follow from accepted findings which have been seen.
-    pub fn following(&self, passing: &Passing, found: &[Matched]) -> Vec<Matched> {
-        found.iter().copied().filter(|it| passing.keeps(*it, &self.passed)).collect()
     }
 
     /// Whether these do not show the same.
@@ -391,110 +320,6 @@ impl Pair {
             kinds[side] == Some(FaultKind::SubrangeViolated) && !is_followed(self.sides[side].dialect, SUBRANGE)
         });
         kinds[0] != kinds[1] || goes_on[0] != goes_on[1]
-    }
-
-    /// Whether every counter shows the same on both sides.
-    pub fn counters_agree(&self) -> bool {
-        self.all_equal(&self.counter_bytes)
-    }
-
-    /// Whether every other block shows the same on both sides.
-    pub fn blocks_agree(&self) -> bool {
-        self.all_equal(&self.block_bytes)
-    }
-
-    /// Whether a one-shot is another block on the other system: F_TRIG is on OPENPLC.
-    pub fn is_other_one_shot(&self, at: usize) -> bool {
-        self.is_other(at, "CLK")
-    }
-
-    /// Whether a timer is: each is on OPENPLC4.
-    pub fn is_other_timer(&self, at: usize) -> bool {
-        self.is_other(at, "PT")
-    }
-
-    /// Whether a block is given the same on both sides; else it differs by that.
-    pub fn is_given_alike(&self, at: usize, states: [&[u8]; 2]) -> bool {
-        let pins = |side: usize| self.sides[side].scalars.blocks[self.blocks[at][side]].block.info().inputs();
-        let shared = pins(0).filter(|it| pins(1).any(|other| other.name == it.name));
-        let mut both = shared.filter_map(|it| Some([self.pin(at, 0, it.name)?, self.pin(at, 1, it.name)?]));
-        both.all(|it| self.equal(it, states))
-    }
-
-    /// Whether the time of a timer is over as it begins.
-    pub fn is_over_at_once(&self, at: usize, states: [&[u8]; 2]) -> bool {
-        (0..2).all(|side| {
-            let preset = self.pin(at, side, "PT").map(|it| &self.sides[side].scalars.all[it]);
-            let program = &self.sides[side].program;
-            let value = preset.and_then(|it| scalar::number(program, it, states[side]));
-            value.is_none_or(|it| it <= 0)
-        })
-    }
-
-    /// The scalar of a block's pin.
-    fn pin(&self, at: usize, side: usize, pin: &str) -> Option<usize> {
-        let scalars = &self.sides[side].scalars;
-        let path = format!("{}.{pin}", scalars.blocks[self.blocks[at][side]].path);
-        scalars.all.iter().position(|it| it.path == path)
-    }
-
-    fn is_other(&self, at: usize, pin: &str) -> bool {
-        let [a, b] = self.blocks[at];
-        let [a, b] = [&self.sides[0].scalars.blocks[a], &self.sides[1].scalars.blocks[b]];
-        a.block != b.block && a.block.info().pin(pin).is_some()
-    }
-
-    /// Whether all that is compared was the same before the last scan.
-    pub fn agreed_in_all(&self) -> bool {
-        self.compared.iter().all(|it| self.agreed(*it))
-    }
-
-    /// Whether these show the same, and did before the last scan.
-    pub fn newly_differs(&self, matched: Matched) -> bool {
-        !self.equal(matched, self.states()) && self.equal(matched, self.before())
-    }
-
-    /// Whether these showed the same before the last scan.
-    pub fn agreed(&self, matched: Matched) -> bool {
-        self.equal(matched, self.before())
-    }
-
-    /// A counter on both sides, by its position among the counters.
-    pub fn instances(&self, counter: usize) -> [&Instance; 2] {
-        let [a, b] = self.counters[counter];
-        [&self.sides[0].scalars.blocks[a], &self.sides[1].scalars.blocks[b]]
-    }
-
-    /// Whether the last scan was the first since the start.
-    pub fn is_first(&self) -> bool {
-        self.first
-    }
-
-    /// Whether a program that had not run since a restart may have run in the last scan.
-    pub fn is_restarted(&self) -> bool {
-        self.restarted
-    }
-
-    /// Both states before anything ran.
-    pub fn start(&self) -> [&[u8]; 2] {
-        self.sides.each_ref().map(|it| it.initial.as_slice())
-    }
-
-    /// Variables that differ since the last scan.
-    pub fn newly_different(&self) -> Vec<Matched> {
-        let Comparison { runs, singles } = &self.compared_bytes;
-        let runs = runs.iter().filter(|it| !it.is_same(self.states())).flat_map(|it| &it.scalars);
-        let variables = runs.chain(singles).copied().filter(|it| self.scalar(0, it[0]).role == Role::Variable);
-        let mut found: Vec<Matched> = variables.filter(|it| self.newly_differs(*it)).collect();
-        found.sort_unstable();
-        found
-    }
-
-    /// Variables that the event before the last scan has made differ, before anything ran.
-    pub fn parted_by_event(&self) -> Vec<Matched> {
-        let restarted = self.sides.each_ref().map(|it| it.restarted.as_slice());
-        let variables = self.compared.iter().filter(|it| self.scalar(0, it[0]).role == Role::Variable);
-        variables.copied().filter(|it| self.agreed(*it) && !self.equal(*it, restarted)).collect()
     }
 
     /// What differs, in the order of the declarations.

@@ -1,6 +1,6 @@
 //! What both sides are given before a scan, and what they leave after it.
 
-use crate::compare::program::scalar;
+use crate::compare::program::held;
 use staunch_host::Event;
 use staunch_ir::{Chars, Program, Type, Value};
 use staunch_runtime::Fault;
@@ -21,7 +21,7 @@ pub struct Input {
 impl Input {
     /// A value of it as a stimulus takes it, but for quotes.
     pub fn spelled(&self, program: &Program, ty: Type, value: Value) -> String {
-        self.text(value).map_or_else(|| scalar::spell(program, ty, value), Chars::text)
+        self.text(value).map_or_else(|| held::spell(program, ty, value), Chars::text)
     }
 
     pub fn text(&self, value: Value) -> Option<&Chars> {

@@ -11,11 +11,12 @@
 use super::scan::{Input, Matched};
 use super::side::Side;
 use crate::compare::program::bounds::{self, Bounds};
-use crate::compare::program::scalar::Instance;
+use crate::compare::program::ranges::Range;
+use crate::compare::program::scalar::{Instance, Role};
 use crate::compare::program::walked::Name;
 use staunch_ir::Value;
 use staunch_runtime::{PinRole, Repr};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// What is known of both systems before they run.
 #[derive(Clone, Copy)]
@@ -98,6 +99,30 @@ fn read(state: &[u8], (offset, repr): (usize, Repr)) -> Option<i128> {
     Value::read(repr, &state[offset..]).as_integer()
 }
 
+/// The values at the start of the variables that the program alone writes: of a member of several instances, from the least on
+/// to the greatest.
+fn starts(known: Known<'_>, side: usize) -> HashMap<Name, Range> {
+    let own = &known.sides[side];
+    let mut found: HashMap<Name, Range> = HashMap::new();
+    let mut outside = HashSet::new();
+    for (at, scalar) in own.scalars.all.iter().enumerate() {
+        let Some((owner, field)) = scalar.field else { continue };
+        let name = Name::Field(owner, field);
+        let value = own.program.repr(scalar.ty).and_then(|it| read(&own.initial, (scalar.offset, it)));
+        let is_given = scalar.role == Role::Input || known.inputs.iter().any(|it| it.scalars[side] == at);
+        let is_located = own.program.structure(owner).fields[field.index()].address.is_some();
+        match value.filter(|_| !is_given && !is_located && !scalar.is_shared) {
+            Some(value) => {
+                let range = found.entry(name).or_insert((value, value));
+                *range = (range.0.min(value), range.1.max(value));
+            }
+            None => _ = outside.insert(name),
+        }
+    }
+    found.retain(|name, _| !outside.contains(name) && !own.scalars.truncated);
+    found
+}
+
 /// Whether the world outside writes a pin of it.
 fn is_given(known: Known<'_>, side: usize, instance: &Instance) -> bool {
     let all = instance.offset..instance.offset + instance.block.info().size;
@@ -121,7 +146,7 @@ fn joined(a: Bounds, b: Bounds) -> Option<Bounds> {
 
 impl Settled {
     pub fn of(known: Known<'_>) -> Self {
-        let found = [0, 1].map(|side: usize| bounds::of(&known.sides[side].program));
+        let found = [0, 1].map(|side: usize| bounds::of(&known.sides[side].program, &starts(known, side)));
         let both = known.counters.iter().map(|[a, b]| [Some(*a), Some(*b)]);
         let counts = |side: usize| {
             let all = known.sides[side].scalars.blocks.iter().enumerate().filter(|it| it.1.counts());

@@ -1,7 +1,8 @@
 //! The program as one system runs it.
 
 use super::normal::{self, Digest, Timer};
-use crate::compare::program::scalar::{self, Scalar, Scalars};
+use crate::compare::program::held;
+use crate::compare::program::scalar::{Scalar, Scalars};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine};
@@ -86,6 +87,6 @@ impl Side {
     }
 
     pub fn show(&self, scalar: usize, state: &[u8]) -> String {
-        scalar::show(&self.program, &self.scalars, &self.scalars.all[scalar], state)
+        held::show(&self.program, &self.scalars, &self.scalars.all[scalar], state)
     }
 }

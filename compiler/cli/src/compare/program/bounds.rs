@@ -4,13 +4,14 @@
 //! What is not understood leaves a counter out. A counter is known by its declaration. Where a way leads to one through a
 //! parameter or a reference, or a copy holds one, the declaration is not known: then no counter of that type has bounds.
 
+use super::ranges::{Range, Ranges};
 use super::walked::Name;
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
-    BlockId, Conversion, Expr, ExprKind, FieldId, Op, Place, Program, Projection, Root, Routine, Statement,
+    BlockId, Conversion, Expr, ExprKind, FieldId, Op, Place, Program, Projection, Root, Routine, RoutineId, Statement,
     StatementKind, Type, Value, reference,
 };
-use staunch_runtime::{BlockInfo, Family, PinRole, Repr};
+use staunch_runtime::{BlockInfo, Family, PinRole};
 use std::collections::{HashMap, HashSet};
 
 /// All that a count is compared with, and 0, lies from `least` to `greatest`; but for resets and loads it goes one way.
@@ -29,11 +30,12 @@ impl Bounds {
     }
 }
 
-/// By the declarations of the counters that have bounds.
-pub fn of(program: &Program) -> HashMap<Name, Bounds> {
-    let mut walk = Walk { program, found: HashMap::new(), open: HashSet::new(), open_types: HashSet::new() };
-    for routine in &program.routines {
-        visit::statements(&routine.body, &mut |it| walk.statement(routine, it));
+/// By the declarations of the counters that have bounds. `starts` are the values of variables at the start.
+pub fn of(program: &Program, starts: &HashMap<Name, Range>) -> HashMap<Name, Bounds> {
+    let ranges = Ranges::of(program, starts);
+    let mut walk = Walk { program, ranges, found: HashMap::new(), open: HashSet::new(), open_types: HashSet::new() };
+    for (at, routine) in program.routines.iter().enumerate() {
+        visit::statements(&routine.body, &mut |it| walk.statement((routine, RoutineId::next(at)), it));
     }
     for (owner, field) in reference::reached(program) {
         walk.open_in(program.structure(owner).fields[field.index()].ty);
@@ -45,6 +47,7 @@ pub fn of(program: &Program) -> HashMap<Name, Bounds> {
 
 struct Walk<'p> {
     program: &'p Program,
+    ranges: Ranges<'p>,
     found: HashMap<Name, (BlockId, Bounds)>,
     /// Counters that are used in a way that is not understood.
     open: HashSet<Name>,
@@ -68,7 +71,8 @@ impl Counter {
 }
 
 impl Walk<'_> {
-    fn statement(&mut self, routine: &Routine, statement: &Statement) {
+    fn statement(&mut self, at: (&Routine, RoutineId), statement: &Statement) {
+        let routine = at.0;
         let mut understood = Vec::new();
         visit::all_exprs(statement, &mut |it| {
             understood.extend(self.comparison(routine, it));
@@ -84,9 +88,9 @@ impl Walk<'_> {
                     understood.push(place);
                 }
             }
-            StatementKind::Assign { target, value } => understood.extend(self.assigned(routine, target, value)),
+            StatementKind::Assign { target, value } => understood.extend(self.assigned(at, target, value)),
             StatementKind::CallBlock { block, instruction, inputs } => {
-                self.call(routine, block, *instruction, inputs);
+                self.call(at, block, *instruction, inputs);
                 understood.push(block);
             }
             // The routine's own statements are walked for themselves.
@@ -159,8 +163,8 @@ impl Walk<'_> {
         }
     }
 
-    fn call(&mut self, routine: &Routine, block: &Place, instruction: usize, inputs: &[Expr]) {
-        let Some(Counter { block, name, .. }) = self.counter(routine, block) else { return };
+    fn call(&mut self, at: (&Routine, RoutineId), block: &Place, instruction: usize, inputs: &[Expr]) {
+        let Some(Counter { block, name, .. }) = self.counter(at.0, block) else { return };
         let info = block.info();
         // A count that turns round at its limit is not past all from there on, and a kept one is a variable as well.
         let is_followed = info.instructions.len() == 1 && info.facts.kept.is_none() && !turns(info);
@@ -172,7 +176,7 @@ impl Walk<'_> {
         bounds.rises = info.pin_for(PinRole::Up).is_some();
         bounds.falls = info.pin_for(PinRole::Down).is_some();
         let presets = info.inputs().zip(inputs).filter(|it| it.0.role == Some(PinRole::Preset));
-        presets.for_each(|it| self.preset(routine, (name, block), it.1));
+        presets.for_each(|it| self.preset(at, (name, block), it.1));
     }
 
     fn bounds(&mut self, name: Name, block: BlockId) -> &mut Bounds {
@@ -184,49 +188,26 @@ impl Walk<'_> {
     }
 
     /// A preset that is assigned.
-    fn assigned<'s>(&mut self, routine: &Routine, target: &'s Place, value: &Expr) -> Option<&'s Place> {
-        let counter = self.counter(routine, target)?;
+    fn assigned<'s>(&mut self, at: (&Routine, RoutineId), target: &'s Place, value: &Expr) -> Option<&'s Place> {
+        let counter = self.counter(at.0, target)?;
         let name = counter.name.filter(|_| counter.role() == Some(PinRole::Preset))?;
-        self.preset(routine, (name, counter.block), value);
+        self.preset(at, (name, counter.block), value);
         Some(target)
     }
 
-    fn preset(&mut self, routine: &Routine, (name, block): (Name, BlockId), value: &Expr) {
+    fn preset(&mut self, at: (&Routine, RoutineId), (name, block): (Name, BlockId), value: &Expr) {
         if let ExprKind::Load(place) = &value.kind
-            && let Some(own) = self.counter(routine, place)
+            && let Some(own) = self.counter(at.0, place)
             && own.name == Some(name)
             && own.role() == Some(PinRole::Preset)
         {
             // It stays as it is.
             return;
         }
-        let (least, greatest) = self.range(value);
+        let (least, greatest) = self.ranges.of_value(at, value);
         let bounds = self.bounds(name, block);
         bounds.add(least);
         bounds.add(greatest);
-    }
-
-    /// The values that an expression may have, as far as its type says.
-    fn range(&self, value: &Expr) -> (i128, i128) {
-        let whole = |ty: Type| self.whole(ty).unwrap_or((i128::MIN, i128::MAX));
-        match &value.kind {
-            ExprKind::Const(it) => it.as_integer().map_or_else(|| whole(value.ty), |it| (it, it)),
-            ExprKind::Load(place) => self.program.range(place.ty).unwrap_or_else(|| whole(place.ty)),
-            ExprKind::Convert(Conversion::Same | Conversion::Value, inner) => {
-                let (inner, all) = (self.range(inner), whole(value.ty));
-                if all.0 <= inner.0 && inner.1 <= all.1 { inner } else { all }
-            }
-            ExprKind::Convert(..)
-            | ExprKind::Text(_)
-            | ExprKind::Aggregate(_)
-            | ExprKind::AddressOf(_)
-            | ExprKind::Apply(..)
-            | ExprKind::ApplyText(..) => whole(value.ty),
-        }
-    }
-
-    fn whole(&self, ty: Type) -> Option<(i128, i128)> {
-        self.program.repr(ty).and_then(Repr::range)
     }
 
     /// A comparison of a count with a constant, and where it reads that.
@@ -252,7 +233,7 @@ impl Walk<'_> {
                 Some(((name, counter.block), place))
             }
             ExprKind::Convert(Conversion::Same | Conversion::Value, inner) => {
-                let (from, to) = (self.whole(inner.ty)?, self.whole(expr.ty)?);
+                let (from, to) = (self.ranges.whole(inner.ty)?, self.ranges.whole(expr.ty)?);
                 if to.0 <= from.0 && from.1 <= to.1 { self.count(routine, inner) } else { None }
             }
             ExprKind::Convert(..)

@@ -10,6 +10,8 @@ mod found;
 mod table;
 mod walk;
 
+mod compared;
+
 pub use found::Facts;
 pub use numbers::Numbers;
 

@@ -2,7 +2,12 @@
 //! counters; and what two programs compute in other types.
 
 pub mod scalar;
+
+pub mod held;
+
 pub mod walked;
+
+pub mod ranges;
 
 pub mod bounds;
 pub mod dependency;

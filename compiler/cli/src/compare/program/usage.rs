@@ -23,6 +23,11 @@ pub struct Usage {
     pub reset_depends: bool,
     /// What it counts depends on its own outputs in some way.
     pub count_depends: bool,
+    /// The inputs that calls give, and those that calls leave as they were.
+    pub given: HashSet<PinRole>,
+    pub left_out: HashSet<PinRole>,
+    /// Something reads what says that it is done, or may by a reference.
+    pub reads_done: bool,
 }
 
 /// By the declarations of the instances.
@@ -32,7 +37,10 @@ pub fn of(program: &Program) -> HashMap<Name, Usage> {
     walk.close();
     walk.each_statement(Walk::note);
     let lent = reference::reached(program).into_iter().map(|(owner, field)| Name::Field(owner, field));
-    lent.for_each(|it| walk.found.entry(it).or_default().is_used = true);
+    lent.for_each(|it| {
+        let usage = walk.found.entry(it).or_default();
+        (usage.is_used, usage.reads_done) = (true, true);
+    });
     walk.found
 }
 
@@ -116,12 +124,17 @@ impl<'p> Walk<'p> {
 
     /// What a statement calls or writes is used, with all that it is in.
     fn used(&mut self, at: At<'p>, statement: &'p Statement) {
-        let mut names = Vec::new();
-        visit::accesses(statement, &mut |place, access| {
-            if access != visit::Access::Read {
-                names.extend(Walked::of(self.program, at, place).names);
+        let (mut names, mut read) = (Vec::new(), Vec::new());
+        visit::accesses(statement, &mut |place, access| match (access, self.source(at, place)) {
+            (visit::Access::Read, Some(Source::Pin(name, PinRole::Done))) => read.push(name),
+            // A copy of all of it, or of what it is in.
+            (visit::Access::Read, _) if !matches!(place.ty, Type::Elementary(_)) => {
+                read.extend(Walked::of(self.program, at, place).names);
             }
+            (visit::Access::Read, _) => {}
+            _ => names.extend(Walked::of(self.program, at, place).names),
         });
+        read.into_iter().for_each(|it| self.found.entry(it).or_default().reads_done = true);
         names.into_iter().for_each(|it| self.found.entry(it).or_default().is_used = true);
     }
 
@@ -170,6 +183,7 @@ impl<'p> Walk<'p> {
         });
         let keeps = self.copied(at, value) == Some(Source::Pin(name, role));
         let usage = self.found.entry(name).or_default();
+        if keeps { &mut usage.left_out } else { &mut usage.given }.insert(role);
         match role {
             PinRole::Preset if !keeps => {
                 usage.presets.insert(value.as_const().and_then(Value::as_integer));

@@ -9,6 +9,9 @@ use crate::compare::search::trace::Trace;
 use staunch_ir::Location;
 use std::fmt::Write;
 
+/// Counters, blocks and variables of which the same is known that are named.
+const HEADINGS: usize = 8;
+
 impl Report<'_> {
     /// `file:line`
     pub(super) fn place(&self, at: Location) -> String {
@@ -39,15 +42,23 @@ impl Report<'_> {
         }
         let mut text = String::new();
         for ((_, lines), headings) in known {
-            let more =
-                if headings.len() > 1 { format!(" and {} more alike", headings.len() - 1) } else { String::new() };
-            let _ = write!(text, "\n{}{more}\n{lines}", headings[0]);
+            let _ = write!(text, "\n{}\n{lines}", self.headings(&headings));
         }
         text
     }
 }
 
 impl Report<'_> {
+    /// Those of which the same is known.
+    fn headings(&self, all: &[String]) -> String {
+        let is_verbose = self.session.common.verbose > 0;
+        let shown = if is_verbose { all.len() } else { HEADINGS };
+        match all.len().saturating_sub(shown) {
+            0 => all.join("\n"),
+            more => format!("{}\nand {more} more alike, which -v names", all[..shown].join("\n")),
+        }
+    }
+
     /// What is known of one counter.
     fn of_subject(&self, own: &[&Finding], accepted: &Accepted) -> String {
         let mut text = String::new();

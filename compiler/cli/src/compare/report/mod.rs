@@ -142,7 +142,8 @@ impl Report<'_> {
         }
         match judged.verdict {
             Verdict::Differs { rows, shortest, .. } => {
-                text += &self.table(pair, world, rows, *shortest, cause, findings);
+                let shortest = shortest.then(|| judged.shortest(rows.len()));
+                text += &self.table(pair, world, rows, shortest, cause, findings);
                 text += &judged.beyond();
             }
             Verdict::Equal(why) => {
@@ -193,6 +194,14 @@ impl Report<'_> {
 }
 
 impl Judged<'_> {
+    /// Where nothing shorter makes a difference: with another answer to what is left open, something may.
+    fn shortest(&self, scans: usize) -> &'static str {
+        match self.others.iter().any(|it| it.scans.is_some_and(|it| it < scans)) {
+            true => "no shorter sequence of these inputs makes a difference with these settings; with others, one does",
+            false => "no shorter sequence of these inputs makes a difference",
+        }
+    }
+
     /// What the vendors' documents leave open, and what each answer comes to.
     fn variants(&self) -> String {
         if self.others.is_empty() {
@@ -202,6 +211,9 @@ impl Judged<'_> {
         let _ = write!(text, " The verdict above is with {}.", self.variant.words());
         for other in self.others {
             let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
+        }
+        if matches!(self.verdict, Verdict::Differs { .. }) {
+            text.push_str(" What to do is for the settings of that verdict.");
         }
         text.push('\n');
         text

@@ -15,6 +15,8 @@ const HEAD: usize = 4;
 const TAIL: usize = 4;
 /// Variables that differ, as columns.
 pub(super) const SHOWN: usize = 3;
+/// And others, by their names.
+const ALSO: usize = 12;
 
 /// One line of the table; `None` stands for rows that are left out.
 pub(super) struct Line {
@@ -31,7 +33,7 @@ impl Report<'_> {
         pair: &Pair,
         world: &World,
         rows: &[Row],
-        shortest: bool,
+        shortest: Option<&str>,
         cause: &Cause,
         findings: &Findings,
     ) -> String {
@@ -68,12 +70,13 @@ impl Report<'_> {
                 writeln!(text, "  {} inputs do not change; --all-inputs shows them", pair.inputs.len() - inputs.len());
         }
         if differences.len() > SHOWN {
-            let more = differences[SHOWN..].iter().map(|it| pair.path(*it));
-            let _ = writeln!(text, "  also different: {}", more.take(12).collect::<Vec<_>>().join(", "));
+            let more: Vec<&str> = differences[SHOWN..].iter().map(|it| pair.path(*it)).collect();
+            let named = if self.session.common.verbose > 0 { more.len() } else { more.len().min(ALSO) };
+            let rest = more.len() - named;
+            let rest = if rest > 0 { format!(" and {rest} more, which -v names") } else { String::new() };
+            let _ = writeln!(text, "  also different: {}{rest}", more[..named].join(", "));
         }
-        if shortest {
-            text.push_str("  no shorter sequence of these inputs makes a difference\n");
-        }
+        text.extend(shortest.map(|it| format!("  {it}\n")));
         if !world.assumptions.lines.is_empty() {
             let _ = writeln!(text, "  assumed: {}", world.assumptions.lines.join("; "));
         }

@@ -68,8 +68,9 @@ impl Hasher for Given {
 const START: usize = usize::MAX;
 
 impl Exhaustive {
-    pub fn new(search: &mut Search<'_>) -> Self {
-        let vectors = search.world.alphabet.vectors.iter().enumerate();
+    /// With the first of the combinations of inputs.
+    pub fn of(search: &mut Search<'_>, vectors: usize) -> Self {
+        let vectors = search.world.alphabet.vectors.iter().take(vectors).enumerate();
         let plain: Vec<(usize, Step)> = vectors.map(|(at, it)| (at, Step::of(it.clone()))).collect();
         let with = |event: Event| plain.iter().map(move |(at, it)| (*at, Step { event: Some(event), ..it.clone() }));
         let events = search.pair.events();

@@ -22,6 +22,8 @@ pub struct Outcome {
     pub sightings: HashMap<Sighting, Trace>,
     /// Every sequence of this many scans was tried.
     pub depth: usize,
+    /// With every combination of inputs that there is; else with those that change few of them.
+    pub all_inputs: bool,
     /// Every state that the inputs tried can reach was seen.
     pub complete: bool,
     /// And every state past the first difference.

@@ -21,7 +21,8 @@ pub fn walk(search: &mut Search<'_>, guided: &Guided) -> usize {
     let constants: Vec<i128> = search.world.constants.iter().copied().collect();
     let mut count = 0;
     let events = search.pair.events();
-    let vectors = search.world.alphabet.vectors.clone();
+    let alphabet = &search.world.alphabet;
+    let vectors: Vec<Vec<Value>> = alphabet.vectors.iter().take(alphabet.few).cloned().collect();
     while search.left > 0 && !search.is_done() {
         let (before, mut inputs, mut ages) = guided.enter(search, dice.below(guided.places().max(1)));
         let mut steps = Vec::new();

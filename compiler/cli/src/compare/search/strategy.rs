@@ -47,8 +47,17 @@ fn run(search: &mut Search<'_>, budget: u64) {
 
 /// How many scans of every sequence were tried, and whether that was all of them.
 fn look(search: &mut Search<'_>, budget: u64) -> (usize, bool) {
-    let mut exhaustive = Exhaustive::new(search);
+    let alphabet = &search.world.alphabet;
+    let (few, all) = (alphabet.few, alphabet.vectors.len());
+    search.outcome.all_inputs = few == all;
+    let mut exhaustive = Exhaustive::of(search, few);
     exhaustive.run(search, budget / 4 * 3);
+    if exhaustive.complete && few < all && !search.is_done() {
+        // What is left goes to the combinations that change more inputs.
+        search.outcome.all_inputs = true;
+        exhaustive = Exhaustive::of(search, all);
+        exhaustive.run(search, budget / 4);
+    }
     if !exhaustive.complete && !search.is_done() {
         let mut guided = Guided::new(search);
         guided.run(search, budget / 4);

@@ -23,7 +23,7 @@ pub fn judge(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Find
     findings.note(pair, world, &outcome, exact);
     if let Some(trace) = outcome.found.clone() {
         // Of numbers that were sampled, others may make a difference sooner.
-        let is_tried = outcome.more_values == 0 && world.alphabet.is_exact();
+        let is_tried = outcome.more_values == 0 && outcome.all_inputs && world.alphabet.is_exact();
         let shortest = is_tried && outcome.depth + 1 >= trace.scans();
         return Ok(differs(pair, world, &trace, shortest, findings));
     }

@@ -1,12 +1,15 @@
 //! What a search has shown where it found no difference: what was tried, and what was not.
 
 use super::Verdict;
+use crate::compare::difference::pitfall;
 use crate::compare::inputs::alphabet;
 use crate::compare::inputs::choice::Covered;
 use crate::compare::pair::Pair;
+use crate::compare::program::scalar::Instance;
 use crate::compare::search::progress::Outcome;
 use crate::compare::search::world::World;
 use staunch_host::Event;
+use staunch_runtime::Family;
 use std::fmt::Write;
 
 /// What an exhausted search has shown.
@@ -68,13 +71,22 @@ pub fn passed_over(pair: &Pair, world: &World) -> String {
     names.map_or_else(String::new, |it| format!("; not compared after an accepted finding: {it}"))
 }
 
-/// A few names, and how many more there are.
+/// The names, of many elements of one array the first and the last.
 fn listed(names: impl Iterator<Item = String>) -> Option<String> {
-    const SHOWN: usize = 5;
-    let names: Vec<_> = names.collect();
-    let more = names.len().saturating_sub(SHOWN);
-    let shown = names.iter().take(SHOWN).cloned().reduce(|all, it| format!("{all}, {it}"))?;
-    Some(if more > 0 { format!("{shown} and {more} more") } else { shown })
+    const ELEMENTS: usize = 5;
+    let mut runs: Vec<(String, Vec<String>)> = Vec::new();
+    for name in names {
+        let array = name.split_once('[').map_or_else(|| name.clone(), |it| it.0.to_owned());
+        match runs.last_mut().filter(|it| it.0 == array) {
+            Some((_, all)) => all.push(name),
+            None => runs.push((array, vec![name])),
+        }
+    }
+    let shown = runs.into_iter().map(|(_, all)| match all.as_slice() {
+        [first, .., last] if all.len() > ELEMENTS => format!("{first} to {last}"),
+        all => all.join(", "),
+    });
+    shown.reduce(|all, it| format!("{all}, {it}"))
 }
 
 /// The events that are tried.
@@ -91,6 +103,19 @@ fn assumed(text: &mut String, world: &World) {
     if !world.assumptions.lines.is_empty() {
         let _ = write!(text, "; assumed: {}", world.assumptions.lines.join("; "));
     }
+}
+
+/// Counts that go on for ever: a COUNTER turns round where no budget reaches.
+fn turning(pair: &Pair) -> Option<String> {
+    let uses = pitfall::uses(pair);
+    let is_tag = |it: &&Instance| it.block.info().family == Family::Logix;
+    let never = (0..uses.len()).filter(|at| uses[*at].is_used && !uses[*at].resets);
+    let names = never.filter_map(|at| pair.instances(at).into_iter().find(is_tag).map(|it| format!("`{}`", it.path)));
+    let names = listed(names)?;
+    Some(format!(
+        "the whole count of {names}, which nothing resets: ACC of Logix goes on past 2147483647, where it turns round to \
+         -2147483648, and no budget leads there; reset it, or stop its rung at a count"
+    ))
 }
 
 /// What a search that found nothing has tried, and what it has not.
@@ -115,12 +140,14 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     if !outcome.complete {
         left.push("longer sequences; a larger --budget tries more of them".to_owned());
     }
+    left.extend(turning(pair).filter(|_| !outcome.complete));
     for (choice, input) in alphabet.choices.iter().zip(&pair.inputs).filter(|it| it.0.covered.is_none()) {
         let path = pair.path(input.scalars);
         left.push(format!("values of {path} other than the {} that were tried", choice.values.len()));
     }
-    if !alphabet.complete {
-        left.push(format!("combinations of inputs other than the {} that change few of them", alphabet.vectors.len()));
+    if !alphabet.complete || !outcome.all_inputs {
+        let tried = if outcome.all_inputs { alphabet.vectors.len() } else { alphabet.few };
+        left.push(format!("combinations of inputs other than the {tried} that change few of them"));
     }
     let untried = listed(alphabet::untried(pair).into_iter().map(str::to_owned));
     left.extend(untried.map(|it| format!("inputs that are references, or of another type on the other system: {it}")));

@@ -2,30 +2,33 @@
 //! Each text is proved in each of its directions, by the cases of `tests/compare/advice.txt`.
 
 mod form;
+mod own;
 mod texts;
 
-pub use form::{Counting, Form};
+pub use form::{Counting, Form, Rules};
 
 use super::list::Pitfall;
 use form::Advice;
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
-use texts::{BLOCKS, FALLING, FROM_LOGIX, RISES, TO_LOGIX};
+use texts::{BLOCKS, FALLING, RISES, TO_LOGIX};
 
 /// Where no text is proved.
 const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
      with `--against`.";
 
 fn all() -> impl Iterator<Item = &'static Advice> {
-    BLOCKS.iter().chain(FALLING).chain(RISES).chain(TO_LOGIX).chain(FROM_LOGIX)
+    BLOCKS.iter().chain(FALLING).chain(RISES).chain(TO_LOGIX)
 }
 
 impl Pitfall {
     /// What to do on the system that the program moves to.
     pub fn advice(self, from: Dialect, to: Dialect, counting: Counting) -> String {
+        let is_of_counting = !Self::OF_MORE.contains(&self);
         let mut texts: Vec<&str> = said(self.number(), from, to, counting).map(|it| it.text).collect();
         texts.dedup();
-        if texts.is_empty() {
-            return OWN.to_owned();
+        if texts.is_empty() || is_of_counting && counting.is_partial {
+            let own = own::text(counting).filter(|_| is_of_counting);
+            return own.unwrap_or_else(|| OWN.to_owned());
         }
         let text = texts.join(" ");
         match to {

@@ -1,12 +1,14 @@
 //! The counter that a difference comes from, and its pitfall.
 
-use super::advice::{Counting, Form};
+use super::advice::{Counting, Form, Rules};
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
 use super::list::Pitfall;
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::apart::Declared;
 use crate::compare::program::dependency::Dependencies;
 use crate::compare::program::scalar::{Instance, Role};
+use crate::compare::program::usage;
+use crate::compare::program::walked::Name;
 use staunch_host::Event;
 use staunch_runtime::{Family, PinRole};
 use std::collections::HashSet;
@@ -26,6 +28,9 @@ pub fn seen(pair: &Pair, at: usize, event: Option<Event>, habits: Habits) -> Opt
 }
 
 fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event>, habits: Habits) -> Option<Case> {
+    if !habits.is_of_both {
+        return None;
+    }
     let instances = pair.instances(at);
     let of = |states: [&[u8]; 2]| level([0, 1].map(|side| pins(instances[side], states[side])));
     let only_down = |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up);
@@ -94,11 +99,13 @@ pub struct Cause {
 }
 
 impl Cause {
-    /// Which way the counter counts: of a COUNTER, by the other system's block.
+    /// How the counter counts: which way, of a COUNTER, by the other system's block.
     pub fn counting(&self, pair: &Pair) -> Counting {
         let numbers = 0..pair.counters.len();
         let mut found = numbers.map(|it| pair.instances(it)).filter(|it| Some(&it[0].path) == self.counter.as_ref());
-        let Some(instances) = found.next() else { return Counting { form: Form::Up, rises: false } };
+        let Some(instances) = found.next() else {
+            return Counting { form: Form::Up, rises: false, rules: None, is_partial: false };
+        };
         let rises = instances.iter().any(|it| {
             let info = it.block.info();
             info.family == Family::Openplc4 && !info.facts.counts_falls
@@ -110,8 +117,25 @@ impl Cause {
             Some((true, true)) => Form::UpDown,
             Some((_, false)) | None => Form::Up,
         };
-        Counting { form, rises }
+        // What CTU and CTD do to one COUNTER is not said.
+        let is_both = is_tag(&instances[0]) && form == Form::UpDown;
+        let rules = if is_both { None } else { rules(instances[0]) };
+        Counting { form, rises, rules, is_partial: is_partial(pair, instances[0]) }
     }
+}
+
+/// What it does on its system.
+fn rules(instance: &Instance) -> Option<Rules> {
+    let kind = kind(instance)?;
+    let (least, greatest) = kind.repr.range()?;
+    let Kind { family, stops, falls, loads_once, .. } = kind;
+    Some(Rules { family, least, greatest, stops, falls, loads_once })
+}
+
+fn is_partial(pair: &Pair, instance: &Instance) -> bool {
+    let found = usage::of(&pair.sides[0].program);
+    let name = instance.field.map(|(owner, field)| Name::Field(owner, field));
+    name.and_then(|it| found.get(&it)).is_some_and(|it| !it.given.is_disjoint(&it.left_out))
 }
 
 /// Looks at the counters that part in the last row by what is compared of them, then at those that the differences depend
@@ -129,7 +153,8 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
         return Cause { counter: Some(pair.instances(found.counter)[0].path.clone()), pitfall: Some(found.pitfall) };
     }
     let counter = direct.counter;
-    if restarted.is_some() {
+    if let Some(row) = restarted {
+        let counter = counter.or_else(|| kept_by_one(pair, rows, row, &relevant));
         return Cause { counter, pitfall: Some(Pitfall::RESTART) };
     }
     if let Some(counter) = held_through_reset(pair, rows, habits) {
@@ -147,6 +172,33 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     });
     let pitfall = (counter.is_none() && widths).then_some(Pitfall::WIDTHS);
     Cause { counter, pitfall }
+}
+
+/// A variable that decides the differences, which one side alone has kept in the event of a row: there it had another value
+/// than the other side begins with.
+fn kept_by_one(pair: &Pair, rows: &[Row], at: usize, relevant: &Relevant) -> Option<String> {
+    let event = rows[at].event?;
+    let before = at.checked_sub(1).map_or(pair.start(), |it| rows[it].states.each_ref().map(Vec::as_slice));
+    let is_kept = |it: &Matched| {
+        let keeps = [0, 1].map(|side: usize| pair.sides[side].keeps(event, pair.scalar(side, it[side]).offset));
+        let side = usize::from(keeps[1]);
+        let scalar = pair.scalar(side, it[side]);
+        let value = |state: &[u8]| state[scalar.offset..scalar.offset + scalar.size].to_vec();
+        keeps[0] != keeps[1] && value(before[side]) != value(pair.start()[side])
+    };
+    let all = pair.matched(|it| matches!(it.role, Role::Variable)).into_iter();
+    let decides: Vec<Matched> =
+        all.filter(|it| is_kept(it) && relevant.has(pair.declared(0, *it), &HashSet::new())).collect();
+    // What another of them decides is made anew in the scan.
+    let follows = |it: &Matched| {
+        let others = decides.iter().filter(|other| pair.declared(0, **other) != pair.declared(0, *it));
+        let decided = |other: &Matched| {
+            let found = pair.declared(0, *other).map(|other| relevant.dependencies.follow(other));
+            found.zip(pair.declared(0, *it)).is_some_and(|(found, own)| found.contains(&own))
+        };
+        others.filter(|other| decided(other)).count()
+    };
+    decides.iter().min_by_key(|it| follows(it)).map(|it| pair.path(*it).to_owned())
 }
 
 /// What the differences at the end depend on.

@@ -38,6 +38,8 @@ pub struct Habits {
     pub feeds_itself: bool,
     /// What it counts depends on its own count.
     pub guards_itself: bool,
+    /// Both programs call or write it: what one alone has says nothing of the two systems.
+    pub is_of_both: bool,
 }
 
 /// All that is known of a counter that differs. The first of two is the system the program comes
@@ -144,7 +146,11 @@ impl Case {
 pub fn classify(case: &Case) -> Option<Pitfall> {
     let number = if case.restarted && case.kept_alike {
         // What both keep is not parted by the event: Logix looks at its rungs anew.
-        (case.parts(Family::Logix) && (case.up() || case.down())).then_some(5).or_else(|| of_scan(case))
+        match case.parts(Family::Logix) && (case.up() || case.down()) {
+            // An edge flag that one side alone keeps gives it another input.
+            true => (!case.given_differs()).then_some(5),
+            false => of_scan(case),
+        }
     } else if case.restarted {
         Some(if case.before.iter().all(|it| it.count == 0) && case.parts(Family::Logix) { 5 } else { 11 })
     } else {
@@ -176,7 +182,7 @@ fn counts(case: &Case) -> Option<usize> {
     }
     let was_reset = case.before.iter().any(|it| it.reset || it.load);
     let is_reset = case.now.iter().any(|it| it.reset || it.load);
-    if case.first && case.parts(Family::Logix) && (case.up() || case.down()) {
+    if case.first && case.parts(Family::Logix) && (case.up() || case.down()) && !case.given_differs() {
         return Some(5);
     }
     if case.guards_itself && case.makes_an_edge() {

@@ -15,6 +15,8 @@ use staunch_runtime::{Family, PinRole};
 pub struct Use {
     /// Something calls or writes it on one side at least.
     pub is_used: bool,
+    /// And on one side nothing does.
+    pub is_of_one: bool,
     /// Its preset is the same constant in every call on both sides.
     pub constant_preset: bool,
     pub habits: Habits,
@@ -24,6 +26,8 @@ pub struct Use {
     pub reset_depends: bool,
     /// Both systems keep, or lose, the same of it.
     pub kept_alike: bool,
+    /// DN of Logix is read, or compared.
+    pub shows_done: bool,
 }
 
 /// How both programs use each counter.
@@ -45,14 +49,17 @@ pub fn uses(pair: &Pair) -> Vec<Use> {
         };
         Use {
             is_used: a.is_used || b.is_used,
+            is_of_one: a.is_used != b.is_used,
             constant_preset: presets.len() == 1 && presets[0].is_some(),
             habits: Habits {
                 feeds_itself: a.feeds_itself || b.feeds_itself,
                 guards_itself: a.count_depends || b.count_depends,
+                is_of_both: a.is_used && b.is_used,
             },
             resets: a.resets || b.resets,
             reset_depends: a.reset_depends || b.reset_depends,
             kept_alike: kept(0) == kept(1),
+            shows_done: pair.shows_done(at),
         }
     };
     (0..pair.counters.len()).map(each).collect()
@@ -75,13 +82,16 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
     let no_up = (!has(PinRole::Up)).then_some("it does not count up");
     match pitfall.number() {
         _ if !usage.is_used => Some("it is never called"),
+        _ if usage.is_of_one => Some("one of the two programs never calls it"),
         1 => no_cscape,
         2 | 3 if parts_openplc => Some("what OPENPLC does is trap 15"),
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),
         3 => no_down.or_else(|| (goes_below(a) == goes_below(b)).then_some("both systems do the same at 0")),
         4 => no_logix
-            .or((!instances.iter().any(|it| it.has(PinRole::Down) && !it.has(PinRole::Up))).then_some("it is no CTD")),
-        5 | 13 => no_logix,
+            .or((!instances.iter().any(|it| it.has(PinRole::Down) && !it.has(PinRole::Up))).then_some("it is no CTD"))
+            .or((!usage.shows_done && !usage.resets).then_some("nothing reads its DN, or loads it")),
+        5 => no_logix,
+        13 => no_logix.or((!usage.shows_done).then_some("nothing reads its DN")),
         6 => no_logix.and(no_cscape).or((!usage.resets).then_some("nothing resets or loads it")),
         7 => (a.repr != b.repr || same_kind || !parts(Family::Logix))
             .then_some("both systems do the same at a limit, or have other limits"),

@@ -6,7 +6,7 @@ pub struct Pitfall(usize);
 
 const PITFALLS: [&str; 20] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
-    "Past PV: CSCAPE holds, and so does CODESYS with `ctu-stop-at-pv = true`; `IF c.CV > PV` never fires there, `CV = PV` fires for long.",
+    "Past PV: the count of CSCAPE stays at PV, and so does that of a CTU of CODESYS and TwinCAT with `ctu-stop-at-pv = true`; the others go on. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
     "CTD at 0: IEC, S7 and Logix go negative; CSCAPE and CODESYS stay.",
     "Logix CTD: DN is TRUE while ACC >= PRE, so it drops when done; there is no load input.",
     "Input already TRUE at start-up: Logix does not count it, the others do.",
@@ -34,6 +34,8 @@ impl Pitfall {
     /// Of timers.
     pub const LATER_CALL: Self = Self::numbered(19);
     pub const WIDTHS: Self = Self::numbered(8);
+    /// What is not about how a counter counts.
+    pub const OF_MORE: [Self; 4] = [Self::numbered(9), Self::RESTART, Self::FIRST_FALL, Self::LATER_CALL];
 
     /// Its number, from 1.
     pub const fn number(self) -> usize {

@@ -26,12 +26,12 @@ pub struct Walk<'p, 'f> {
 
 impl<'p> Walk<'p, '_> {
     /// The innermost declaration that a place is an element of; a pin of a block is none.
-    fn name(&self, place: &Place) -> Option<Name> {
+    pub(super) fn name(&self, place: &Place) -> Option<Name> {
         Walked::of(self.program, (self.routine, self.id), place).variable()
     }
 
     /// The variable whose value an expression is, unchanged but for a wider type.
-    fn variable(&self, expr: &Expr) -> Option<Name> {
+    pub(super) fn variable(&self, expr: &Expr) -> Option<Name> {
         match &expr.kind {
             ExprKind::Load(place) => self.name(place),
             ExprKind::Convert(Conversion::Same | Conversion::Value, inner) if self.widens(inner.ty, expr.ty) => {
@@ -165,12 +165,12 @@ impl<'p> Walk<'p, '_> {
         Some(Way { from, members })
     }
 
-    fn note_read(&mut self, name: Name) {
+    pub(super) fn note_read(&mut self, name: Name) {
         self.facts.read.insert(name);
     }
 
     /// What an array is indexed with is worth being at its ends, and beyond.
-    fn indices(&mut self, place: &Place) {
+    pub(super) fn indices(&mut self, place: &Place) {
         let mut ty = self.program.root_type(self.routine, place.root);
         let mut whole = None;
         for projection in &place.projections {
@@ -205,7 +205,7 @@ impl<'p> Walk<'p, '_> {
     }
 
     /// An expression whose value matters as a whole.
-    fn expr(&mut self, expr: &Expr) {
+    pub(super) fn expr(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Const(value) => self.facts.constant(Some(expr.ty), *value),
             ExprKind::Text(text) => self.facts.text(text),
@@ -289,7 +289,7 @@ impl<'p> Walk<'p, '_> {
     }
 
     /// A number is a character of a text, after so many others.
-    fn is_character(&mut self, op: TextOp, operands: &[Expr], limit: Number) {
+    pub(super) fn is_character(&mut self, op: TextOp, operands: &[Expr], limit: Number) {
         let Number::Integer(limit) = limit else { return };
         let before = match op {
             TextOp::CharAt | TextOp::WcharAt => {
@@ -340,75 +340,9 @@ impl<'p> Walk<'p, '_> {
         }
         found
     }
-
-    /// A text as it is compared with another.
-    fn texts(&mut self, a: &Expr, b: &Expr, is_exact: bool) {
-        match (self.variable(a), &b.kind) {
-            (Some(name), ExprKind::Text(text)) => {
-                self.facts.near_to_text(name, text);
-                if is_exact { self.operand(a) } else { self.expr(a) }
-            }
-            (name, other) => {
-                self.facts.flows.extend(name.zip(self.variable(b)));
-                self.expr(a);
-                if let ExprKind::Text(text) = other {
-                    self.reaches(a, text);
-                }
-            }
-        }
-    }
-
-    /// `a` as it is compared with `b`.
-    fn comparison(&mut self, a: &Expr, b: &Expr) {
-        match number(b) {
-            Some(limit) => {
-                self.compared(a, limit);
-                self.operand(a);
-            }
-            None => {
-                if let (Some(x), Some(y)) = (self.variable(a), self.variable(b)) {
-                    self.facts.flows.insert((x, y));
-                }
-                self.expr(a);
-            }
-        }
-    }
-
-    /// An operand of which only a comparison with a constant is seen.
-    fn operand(&mut self, expr: &Expr) {
-        match self.variable(expr) {
-            Some(name) => {
-                self.note_read(name);
-                visit::reads(expr, &mut |it| self.indices(it));
-            }
-            None => self.expr(expr),
-        }
-    }
-
-    /// Notes for which values of its variables an expression comes near a limit.
-    pub fn compared(&mut self, expr: &Expr, limit: Number) {
-        match &expr.kind {
-            ExprKind::Load(place) => {
-                if let (Some(name), Some(value)) = (self.name(place), limit.value()) {
-                    self.facts.near_to(name, value);
-                }
-            }
-            ExprKind::Convert(_, inner) => self.compared(inner, limit.of_type(self.program, inner.ty)),
-            ExprKind::Apply(op, operands) => {
-                for (at, operand) in operands.iter().enumerate() {
-                    let other = operands.get(1 - at.min(1)).and_then(number);
-                    for limit in limit.before(*op, at, other) {
-                        self.compared(operand, limit);
-                    }
-                }
-            }
-            ExprKind::ApplyText(op, operands) => self.is_character(*op, operands, limit),
-            ExprKind::Const(_) | ExprKind::Text(_) | ExprKind::Aggregate(_) | ExprKind::AddressOf(_) => {}
-        }
-    }
 }
 
-fn number(expr: &Expr) -> Option<Number> {
+pub(super) fn number(expr: &Expr) -> Option<Number> {
     match expr.as_const()? {
         Value::F32(it) => Some(Number::Real(f64::from(it))),
         Value::F64(it) => Some(Number::Real(it)),

@@ -1,6 +1,6 @@
 //! Which trap a difference is put down to.
 
-use super::super::advice::{Counting, Form};
+use super::super::advice::{Counting, Form, Rules};
 use super::*;
 use staunch_frontend::Dialect;
 
@@ -85,14 +85,21 @@ fn what_the_rules_rule_out_has_a_reason() {
     assert_eq!(number(case(LOGIX, IDLE, [count(down, -1), down])), None);
 }
 
+/// A counter that calls give all of its inputs.
+fn counting(form: Form) -> Counting {
+    let (least, greatest) = (i128::from(i16::MIN), i128::from(i16::MAX));
+    let rules = Rules { family: Family::Iec, least, greatest, stops: false, falls: false, loads_once: false };
+    Counting { form, rises: false, rules: Some(rules), is_partial: false }
+}
+
 #[test]
 fn every_pitfall_says_what_to_do() {
     for (pitfall, number) in Pitfall::all().zip(1..) {
         assert_eq!(pitfall.number(), number);
-        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape, Counting { form: Form::Up, rises: false });
+        let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape, counting(Form::Up));
         assert!(pitfall.sentence().ends_with('.') && advice.ends_with('.'), "{number}");
-        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys, Counting { form: Form::Up, rises: false });
-        let both = pitfall.advice(Dialect::Iec, Dialect::Logix, Counting { form: Form::UpDown, rises: false });
+        let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys, counting(Form::Up));
+        let both = pitfall.advice(Dialect::Iec, Dialect::Logix, counting(Form::UpDown));
         assert!(!both.contains("CTU(") && !both.contains("CTD("), "a CTUD is no CTU: {both}");
         assert!(!reset.contains("R := ") || reset.contains("RESET := "), "{reset}");
     }

@@ -1,15 +1,16 @@
 //! `staunch compare`: each of the traps in a small program, what is printed of it, and the exit codes.
 
+use super::programs::{Folder, command};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/compare")
 }
 
 fn run(arguments: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").args(arguments.split_whitespace()).current_dir(folder()).env("NO_COLOR", "1");
+    let mut command = command();
+    command.args(arguments.split_whitespace()).current_dir(folder());
     if !arguments.contains("--budget") {
         // Tests are built without optimisation; what they look for is found soon.
         command.args(["--budget", "1000000"]);
@@ -19,18 +20,15 @@ fn run(arguments: &str) -> Output {
 
 /// Of programs in the folder, where the project decides what CODESYS leaves open.
 fn decided(arguments: &str) -> Output {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_decided");
+    let folder = Folder("decided").path();
     static WRITTEN: std::sync::Once = std::sync::Once::new();
     WRITTEN.call_once(|| {
-        std::fs::create_dir_all(&folder).expect("a folder");
         std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\n").expect("a project file");
         for name in ["names.st", "no_run.txt"] {
             std::fs::copy(self::folder().join(name), folder.join(name)).expect("a copy");
         }
     });
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").args(arguments.split_whitespace()).current_dir(folder).env("NO_COLOR", "1");
-    command.output().expect("the command starts")
+    command().args(arguments.split_whitespace()).current_dir(folder).output().expect("the command starts")
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -257,11 +255,7 @@ fn a_run_gives_the_same_answer_again() {
 
 /// A program in a folder of the test's own.
 fn written(name: &str, source: &str) -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare");
-    std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    let path = folder.join(name);
-    std::fs::write(&path, source).expect("a file");
-    path
+    Folder("traps").written(name, source).into()
 }
 
 #[test]
@@ -443,7 +437,7 @@ fn what_only_stop_to_run_keeps_is_found() {
          \x20    1           TRUE   TRUE       TRUE\n\
          \x20    2     run  FALSE  FALSE       TRUE ◀\n";
     let out = difference(&format!("{arguments} --save-stimulus {}", saved.display()));
-    assert!(out.starts_with(table) && out.contains("Trap 11: Restart"), "{out}");
+    assert!(out.starts_with(table) && out.contains("Trap 11 (`n`): Restart"), "{out}");
     assert_eq!(std::fs::read_to_string(&saved).expect("it is saved"), "scan,on,@event\n1,TRUE,\n2,FALSE,run\n");
     let again = difference(&format!("{arguments} --stimulus {}", saved.display()));
     assert!(again.contains("     2     run  FALSE  FALSE       TRUE ◀"), "{again}");
@@ -541,7 +535,7 @@ fn what_is_written_is_the_other_systems() {
 }
 
 fn check(dialect: &str, path: &Path) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+    let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_staunch"));
     command.args(["check", "--dialect", dialect]).arg(path).output().expect("the command starts")
 }
 

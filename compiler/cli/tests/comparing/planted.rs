@@ -2,10 +2,9 @@
 //! scans. `staunch compare` finds it within its default budget, or says that it has not: never that the
 //! systems are equal, and never a difference before there is one.
 //!
-//! `cargo test -p staunch --test compare_planted -- --ignored --nocapture` tries all and prints the count.
+//! `cargo test -p staunch --test comparing planted -- --ignored --nocapture` tries all and prints the count.
 
-use std::path::PathBuf;
-use std::process::Command;
+use super::programs::{self, Folder};
 
 struct Planted {
     name: String,
@@ -115,22 +114,9 @@ fn planted() -> Vec<Planted> {
 
 /// After how many scans the difference was found; `None` where the command says that it has found none.
 fn found(planted: &Planted) -> Option<usize> {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("planted");
-    std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    let path = folder.join(format!("{}.st", planted.name));
-    std::fs::write(&path, &planted.source).expect("a program");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").arg(&path).args([
-        "--from",
-        planted.from,
-        "--to",
-        planted.to,
-        "--vars",
-        "out",
-        "-A",
-        "warnings",
-    ]);
-    let output = command.output().expect("the command starts");
+    let path = Folder("planted").written(&format!("{}.st", planted.name), &planted.source);
+    let systems = ["--from", planted.from, "--to", planted.to, "--vars", "out", "-A", "warnings"];
+    let output = programs::command().arg(&path).args(systems).output().expect("the command starts");
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let scans = text.split(" differ after ").nth(1).and_then(|it| it.split(' ').next()).and_then(|it| it.parse().ok());
     match (output.status.code(), scans) {

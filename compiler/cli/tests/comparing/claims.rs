@@ -1,27 +1,14 @@
 //! `staunch compare` claims no more than it has shown. What each program must come to follows from the systems' rules,
 //! which the test names.
 
-use std::path::PathBuf;
-use std::process::Command;
+use super::programs::{Folder, command, printed};
 
-fn folder() -> PathBuf {
-    let path = std::env::temp_dir().join(format!("staunch-compare-claims-{}", std::process::id()));
-    std::fs::create_dir_all(&path).expect("a folder");
-    path
-}
-
-/// A file of the test's own.
-fn written(name: &str, text: &str) -> String {
-    let path = folder().join(name);
-    std::fs::write(&path, text).expect("a file");
-    path.display().to_string()
-}
+const OWN: Folder = Folder("claims");
 
 /// The exit code, and what is printed.
 fn compare(name: &str, source: &str, arguments: &[&str]) -> (Option<i32>, String) {
-    let path = written(&format!("{name}.st"), source);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    let output = command.args(["compare", &path]).args(arguments).output().expect("it starts");
+    let path = OWN.written(&format!("{name}.st"), source);
+    let output = command().arg(&path).args(arguments).output().expect("it starts");
     (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
@@ -40,14 +27,14 @@ END_PROGRAM
 /// An output needs a line of its own, and `*` is none.
 #[test]
 fn an_accepted_counter_does_not_accept_an_output() {
-    let counters = written("counters.txt", "c 15: nobody reads the count past its preset\nd 15: same\n");
+    let counters = OWN.written("counters.txt", "c 15: nobody reads the count past its preset\nd 15: same\n");
     let (code, text) = compare("motor", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &counters]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("Not accepted: `motor output`.") && text.contains("`motor output: reason`"), "{text}");
-    let all = written("all.txt", "* 15: nobody reads the count past its preset\n* output: nobody looks\n");
+    let all = OWN.written("all.txt", "* 15: nobody reads the count past its preset\n* output: nobody looks\n");
     let (code, text) = compare("motor_all", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &all]);
     assert_eq!(code, Some(1), "{text}");
-    let own = written("own.txt", "c 15: nobody reads it\nd 15: same\nmotor output: it is not wired\n");
+    let own = OWN.written("own.txt", "c 15: nobody reads it\nd 15: same\nmotor output: it is not wired\n");
     let (code, text) = compare("motor_own", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &own]);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("not compared after an accepted finding: c.Q, c.CV, d.Q, d.CV, motor."), "{text}");
@@ -57,7 +44,7 @@ fn an_accepted_counter_does_not_accept_an_output() {
 #[test]
 fn what_is_named_and_what_is_wired_are_outputs() {
     let plain = MOTOR.replace("VAR_OUTPUT motor", "VAR motor");
-    let counters = written("counters_of_vars.txt", "c 15: nobody reads the count past its preset\nd 15: same\n");
+    let counters = OWN.written("counters_of_vars.txt", "c 15: nobody reads the count past its preset\nd 15: same\n");
     let arguments = ["--from", "iec", "--to", "openplc", "--accept", counters.as_str()];
     let (code, text) = compare("inside", &plain, &arguments);
     assert_eq!(code, Some(0), "{text}");
@@ -105,7 +92,7 @@ fn a_table_that_is_only_read_is_no_input() {
     let source = table(tables[0].1, "t[0] = 7");
     let (code, text) = compare("not_assumed", &source, &TO_OPENPLC);
     assert_eq!(code, Some(0), "{text}");
-    let assumed = written("assumed.txt", "t[0] 0..10\n");
+    let assumed = OWN.written("assumed.txt", "t[0] 0..10\n");
     let (code, text) = compare("assumed", &source, &[&TO_OPENPLC[..], &["--assume", &assumed]].concat());
     assert_eq!(code, Some(1), "{text}");
     // What is RETAIN, or has an address, is there for the world outside to write.
@@ -156,14 +143,14 @@ END_PROGRAM
         ("iec", "codesys", "`ctu-stop-at-pv = true`", "With `ctu-stop-at-pv = false`, the two are equal."),
         ("codesys", "openplc", "`ctu-stop-at-pv = false`", "With `ctu-stop-at-pv = true`, the two are equal."),
     ] {
-        let no_run = written("no_run.txt", "no run\n");
+        let no_run = OWN.written("no_run.txt", "no run\n");
         let (code, text) = compare("open", &passes, &[&arguments(from, to)[..], &["--assume", &no_run]].concat());
         assert_eq!(code, Some(1), "{text}");
         assert!(text.contains(&format!("The verdict above is with {shown}. {other}")), "{text}");
     }
     // What never reaches its preset is the same either way, and that is said.
     let below = source("c.CV > 1");
-    let no_run = written("no_run.txt", "no run\n");
+    let no_run = OWN.written("no_run.txt", "no run\n");
     let arguments = [&arguments("iec", "codesys")[..], &["--assume", &no_run]].concat();
     let (code, text) = compare("open_below", &below, &arguments);
     assert_eq!(code, Some(0), "{text}");
@@ -176,9 +163,7 @@ END_PROGRAM
 /// A project that has asked its vendor decides it.
 #[test]
 fn what_the_project_decides_is_the_verdict() {
-    let folder = folder().join("decided");
-    std::fs::create_dir_all(&folder).expect("a folder");
-    std::fs::write(folder.join("staunch.toml"), "ctu-stop-at-pv = false\n").expect("a project file");
+    OWN.written("decided/staunch.toml", "ctu-stop-at-pv = false\n");
     let source = "PROGRAM p
 VAR_INPUT s : BOOL; END_VAR
 VAR_OUTPUT over : BOOL; END_VAR
@@ -188,7 +173,7 @@ over := c.CV > 3;
 END_PROGRAM
 ";
     let arguments = ["--from", "iec", "--to", "codesys", "--vars", "over", "--assume"];
-    let no_run = written("never_run.txt", "no run\n");
+    let no_run = OWN.written("never_run.txt", "no run\n");
     let (code, text) = compare("decided/p", source, &[&arguments[..], &[no_run.as_str()]].concat());
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("With `ctu-stop-at-pv = true`, the two differ after 7 scans."), "{text}");
@@ -205,7 +190,7 @@ c(s, l, 3);
 o := c.CV < 0;
 END_PROGRAM
 ";
-    let accepted = written("below.txt", "c 3: the count below 0 is not used\n");
+    let accepted = OWN.written("below.txt", "c 3: the count below 0 is not used\n");
     let (code, text) = compare("kept", source, &["--from", "iec", "--to", "codesys", "--accept", &accepted]);
     assert_eq!(code, Some(1), "{text}");
     assert!(!text.contains("reachable after 2 scans: trap 11"), "{text}");
@@ -244,7 +229,7 @@ e(CLK := s); k(CD := e.Q, LD := ld, PV := 3, Q => empty);
 some := NOT k.Q;
 END_PROGRAM
 ";
-    let file = folder().join("port.st").display().to_string();
+    let file = OWN.path().join("port.st").display().to_string();
     let arguments = ["--from", "iec", "--to", "logix", "--vars", "empty,some", "--write", &file];
     let (_, text) = compare("ctd", source, &arguments);
     assert!(!text.contains("Trap 4"), "{text}");
@@ -261,12 +246,10 @@ VAR c : CTU; END_VAR
 c(CU := s, R := r, PV := 3);
 END_PROGRAM
 ";
-    let path = written("ladder.st", source);
-    let file = folder().join("written.st").display().to_string();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.args(["compare", &path, "--from", "iec", "--to", "logix", "--write", &file]);
-    let output = command.output().expect("it starts");
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    let path = OWN.written("ladder.st", source);
+    let file = OWN.path().join("written.st").display().to_string();
+    let arguments = ["--from", "iec", "--to", "logix", "--write", &file];
+    let said = printed(&command().arg(&path).args(arguments).output().expect("it starts"));
     assert!(said.contains("Studio 5000 has CTU and RES in ladder only") && said.contains("(line 4)"), "{said}");
 }
 
@@ -283,7 +266,7 @@ END_PROGRAM
     let (code, text) = compare("both_ways", source, &["--from", "iec", "--to", "logix"]);
     assert_eq!(code, Some(1), "{text}");
     let advice = text.lines().find(|it| it.starts_with("What to do: ")).unwrap_or_default();
-    assert!(advice.contains("CTUD(c)") && !advice.contains("CTU(c"), "{text}");
+    assert!(advice.contains("ed := pulse AND NOT bd") && !advice.contains("CTU(c"), "{text}");
 }
 
 /// CODESYS holds a TIME in 32 bits without a sign (its help, "TIME, LTIME"), so that `T#1s - T#2s` is no negative time.
@@ -297,7 +280,7 @@ d := a - b;
 neg := on AND d < T#0s;
 END_PROGRAM
 ";
-    let no_run = written("unfollowed.txt", "no run\n");
+    let no_run = OWN.written("unfollowed.txt", "no run\n");
     for (from, to) in [("iec", "codesys"), ("codesys", "openplc")] {
         let arguments = ["--from", from, "--to", to, "--assume", no_run.as_str()];
         let (code, text) = compare("time", source, &arguments);
@@ -447,10 +430,9 @@ END_PROGRAM
 /// resets and loads it may read the counter itself, as it was before the call.
 #[test]
 fn the_port_of_a_ctud_lets_reset_win_over_load() {
-    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let none = OWN.written("no_event.txt", "no run\nno restart\nno reset\n");
     let arguments = ["--to", "logix", "--vars", "o", "--assume", &none, "--from"];
-    std::fs::create_dir_all(folder().join("level")).expect("a folder");
-    std::fs::write(folder().join("level/staunch.toml"), "s7-ld = \"level\"\n").expect("a project file");
+    OWN.written("level/staunch.toml", "s7-ld = \"level\"\n");
     for from in ["iec", "openplc", "siemens", "codesys"] {
         for (name, load) in [("plain", "l"), ("both", "l OR r"), ("own", "c.CV = 0 AND l")] {
             let source = format!(
@@ -472,7 +454,7 @@ END_PROGRAM
 /// A load on Logix comes after CTUD, which evaluates DN: QU is asked of the count.
 #[test]
 fn the_port_of_a_loaded_ctud_asks_for_the_count() {
-    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let none = OWN.written("no_event.txt", "no run\nno restart\nno reset\n");
     let loaded = "PROGRAM p
 VAR_INPUT l : BOOL; END_VAR
 VAR_OUTPUT o, q : BOOL; END_VAR
@@ -492,8 +474,7 @@ END_PROGRAM
 /// An Editor of OpenPLC that counts CD as it rises is not given CD negated.
 #[test]
 fn advice_is_for_the_edge_that_is_counted() {
-    std::fs::create_dir_all(folder().join("rising")).expect("a folder");
-    std::fs::write(folder().join("rising/staunch.toml"), "openplc4-cd-edge = \"rising\"\n").expect("a project file");
+    OWN.written("rising/staunch.toml", "openplc4-cd-edge = \"rising\"\n");
     let source = "PROGRAM p
 VAR_INPUT up, down : BOOL; END_VAR
 VAR_OUTPUT full : BOOL; END_VAR
@@ -529,7 +510,7 @@ c(s, l, 3);
 END_PROGRAM
 ";
     for from in ["codesys", "openplc"] {
-        let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+        let none = OWN.written("no_event.txt", "no run\nno restart\nno reset\n");
         let (_, text) = compare(&format!("cd_{from}"), down, &["--from", from, "--to", "cscape", "--assume", &none]);
         let advice = text.lines().find(|it| it.starts_with("What to do: ")).unwrap_or_default();
         assert!(advice.contains("c(CD := e.Q, …)") && !advice.contains("CU :="), "{from}: {text}");
@@ -569,7 +550,7 @@ pump(En := on);
 off := pump.Off;
 END_PROGRAM
 ";
-    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let none = OWN.written("no_event.txt", "no run\nno restart\nno reset\n");
     for (name, source, vars, to, said) in [
         ("calls", calls, "o", "openplc", "Trap 15 (`c`)"),
         ("calls", calls, "o", "codesys", "Trap 3 (`c`)"),
@@ -596,7 +577,7 @@ t(IN := c.CV > 2, PT := T#30ms);
 o := t.Q;
 END_PROGRAM
 ";
-    let accepted = written("timer.accept", "c 15: known\no output: known\n");
+    let accepted = OWN.written("timer.accept", "c 15: known\no output: known\n");
     let (code, text) =
         compare("timer", source, &["--from", "iec", "--to", "openplc", "--vars", "o", "--accept", &accepted]);
     assert_eq!(code, Some(0), "{text}");
@@ -613,9 +594,9 @@ c(CU := s, RESET := FALSE, PV := 3);
 t(SET1 := s, RESET := FALSE);
 END_PROGRAM
 ";
-    let path = written("pin_names.st", source);
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    let output = command.args(["compare", &path, "--from", "codesys", "--to", "siemens"]).output().expect("it starts");
+    let path = OWN.written("pin_names.st", source);
+    let arguments = ["--from", "codesys", "--to", "siemens"];
+    let output = command().arg(&path).args(arguments).output().expect("it starts");
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert!(
         said.contains("`RESET` is called `R` in S7") && said.contains("`SET1` is called `S1` in SIEMENS"),
@@ -647,7 +628,7 @@ a[i](y OR x, c.Q, 1);
 o := a[1].Q;
 END_PROGRAM
 ";
-    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let none = OWN.written("no_event.txt", "no run\nno restart\nno reset\n");
     for (number, source, from, to, said) in [
         (0, second, "iec", "openplc", "Trap 15 (`c`)"),
         (1, second, "codesys", "siemens", "Trap 2 (`c`)"),
@@ -681,7 +662,7 @@ c(s, r, 2);
 o := d.Q AND c.Q;
 END_PROGRAM
 ";
-    let none = written("no_event.txt", "no run\nno restart\nno reset\n");
+    let none = OWN.written("no_event.txt", "no run\nno restart\nno reset\n");
     for (name, source, from, said) in
         [("below", below, "openplc", "Trap 15 (`c`)"), ("two", two, "iec", "Trap 5 (`c`)")]
     {
@@ -703,7 +684,7 @@ IF s THEN n := n + 1; END_IF;
 o := n > 2;
 END_PROGRAM
 ";
-    let assumed = written("no_run_of_subrange.txt", "no run\n");
+    let assumed = OWN.written("no_run_of_subrange.txt", "no run\n");
     for (from, to) in [("openplc", "codesys"), ("iec", "openplc4")] {
         let (code, text) =
             compare("subrange", source, &["--from", from, "--to", to, "--vars", "o", "--assume", &assumed]);

@@ -1,10 +1,11 @@
 //! The advice of `staunch compare`, proved by running it: the program as it is parts from itself by the
 //! trap on the other system, and the program changed as advised is equal to the original.
 
+use super::programs::{self, Folder};
 use std::path::PathBuf;
-use std::process::{Command, Output};
+use std::process::Output;
 
-const CASES: &str = include_str!("compare/advice.txt");
+const CASES: &str = include_str!("../compare/advice.txt");
 
 /// Cases that run at once.
 const THREADS: usize = 4;
@@ -71,8 +72,7 @@ fn in_words_of(text: &str, dialect: &str) -> String {
 const RISING: &str = "VAR_INPUT sensor, clear : BOOL; END_VAR VAR full, over : BOOL; c : CTU; e : R_TRIG; END_VAR";
 
 fn scratch() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_advice");
-    std::fs::create_dir_all(&folder).expect("a folder for the programs");
+    let folder = Folder("advice").path();
     // What is left open is decided: the advice is for a CTU of CODESYS and Siemens that goes on past its preset, a CTD of S7
     // that loads while LD is TRUE, and an Editor of OpenPLC that counts CD as it falls.
     static DECIDED: std::sync::Once = std::sync::Once::new();
@@ -111,17 +111,17 @@ fn assumed(line: &str) -> PathBuf {
 }
 
 fn compare(from: &str, to: &str, vars: &str, original: &PathBuf, other: &PathBuf) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").arg(original).args(["--from", from, "--to", to, "--vars", vars, "-A", "warnings"]);
+    let mut command = programs::command();
+    command.arg(original).args(["--from", from, "--to", to, "--vars", vars, "-A", "warnings"]);
     if from != to && [from, to].contains(&"codesys") && vars != "kept" {
         // What CODESYS keeps over STOP -> RUN is trap 11, which has a test of its own.
         command.arg("--assume").arg(assumed("no run"));
     }
-    command.arg("--against").arg(other).env("NO_COLOR", "1").output().expect("the command starts")
+    command.arg("--against").arg(other).output().expect("the command starts")
 }
 
 fn out(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+    programs::printed(output)
 }
 
 fn equal(name: &str, from: &str, to: &str, vars: &str, [original, advised]: [&PathBuf; 2]) {
@@ -269,8 +269,8 @@ fn a_counter_that_resets_itself_as_advised_loses_nothing() {
 #[test]
 fn a_call_by_position_needs_no_change() {
     let path = program("9.st", RISING, "c(sensor AND NOT full, clear, 3); full := c.Q;");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").arg(&path).args(["--from", "iec", "--to", "codesys"]);
+    let mut command = programs::command();
+    command.arg(&path).args(["--from", "iec", "--to", "codesys"]);
     let output = command.arg("--assume").arg(assumed("no run")).output().expect("it starts");
     assert_eq!(output.status.code(), Some(0), "{}", out(&output));
     assert!(!out(&output).contains("Trap 9"), "{}", out(&output));
@@ -301,8 +301,8 @@ fn a_called_program_and_a_list_of_globals_say_what_to_write_elsewhere() {
          instance(go := sensor); full := instance.full; n := MIN(n + 1, most); END_PROGRAM\n",
     );
     let alone = |more: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-        command.arg("compare").arg(&original).args(["--from", "codesys", "--to", "iec"]).args(more);
+        let mut command = programs::command();
+        command.arg(&original).args(["--from", "codesys", "--to", "iec"]).args(more);
         command.output().expect("the command starts")
     };
     let refused = alone(&[]);

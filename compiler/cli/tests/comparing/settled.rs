@@ -1,24 +1,11 @@
 //! Counts past all that they are compared with are taken as one: what is equal by that, and what must not be. In each pair
 //! that differs, only a count beyond 3, which the counter's call names, shows it.
 
-use std::path::PathBuf;
-use std::process::Command;
+use super::programs::{self, Folder};
 
+const OWN: Folder = Folder("settled");
 const INPUTS: &str = "VAR_INPUT x, y, r : BOOL; END_VAR VAR_OUTPUT z : BOOL; END_VAR";
 const CALL: &str = "c(CU := x, PV := 3);";
-
-fn folder() -> PathBuf {
-    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_settled");
-    std::fs::create_dir_all(&path).expect("a folder");
-    path
-}
-
-/// A file of the test's own.
-fn written(name: &str, text: &str) -> String {
-    let path = folder().join(name);
-    std::fs::write(&path, text).expect("a file");
-    path.display().to_string()
-}
 
 /// A program with these variables, after these types and blocks.
 fn program(before: &str, variables: &str, body: &str) -> String {
@@ -27,20 +14,18 @@ fn program(before: &str, variables: &str, body: &str) -> String {
 
 /// The exit code, and what is printed.
 fn compare(name: &str, [a, b]: [&str; 2], systems: [&str; 2], vars: &str) -> (Option<i32>, String) {
-    let (path, other) = (written(&format!("{name}_a.st"), a), written(&format!("{name}_b.st"), b));
-    let assumed = written(&format!("{name}.txt"), "no run\nno restart\nno reset\n");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.args(["compare", &path, "--from", systems[0], "--to", systems[1], "--vars", vars]);
+    let (path, other) = (OWN.written(&format!("{name}_a.st"), a), OWN.written(&format!("{name}_b.st"), b));
+    let assumed = OWN.written(&format!("{name}.txt"), "no run\nno restart\nno reset\n");
+    let mut arguments = vec![path.as_str(), "--from", systems[0], "--to", systems[1], "--vars", vars];
     if a != b {
-        command.args(["--against", &other]);
+        arguments.extend(["--against", &other]);
     }
     if systems[1] == "logix" {
         // No budget leads to 2,147,483,647 counts.
-        command.args(["--budget", "100000"]);
+        arguments.extend(["--budget", "100000"]);
     }
-    let output = command.args(["--assume", &assumed, "-A", "warnings"]).output().expect("it starts");
-    let text = [output.stdout, output.stderr].map(|it| String::from_utf8_lossy(&it).into_owned()).concat();
-    (output.status.code(), text)
+    arguments.extend(["--assume", &assumed, "-A", "warnings"]);
+    programs::compare(&arguments)
 }
 
 /// The number of scans after which the two differ.

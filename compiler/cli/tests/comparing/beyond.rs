@@ -1,8 +1,9 @@
 //! What a move changes beside counters, planted one kind a program: `staunch compare` lists it at the user's own
 //! line, with the scans that show it.
 
-use std::path::PathBuf;
-use std::process::Command;
+use super::programs::{self, Folder};
+
+const OWN: Folder = Folder("beyond");
 
 struct Planted {
     name: &'static str,
@@ -176,24 +177,20 @@ share := 100 / (c.CV - 3);",
     },
 ];
 
-fn folder() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_beyond");
-    std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    folder
+/// A program, by its path.
+fn program(name: &str, source: &str) -> String {
+    OWN.written(&format!("{name}.st"), &format!("PROGRAM p\n{source}\nEND_PROGRAM\n"))
 }
 
-fn program(name: &str, source: &str) -> PathBuf {
-    let path = folder().join(format!("{name}.st"));
-    std::fs::write(&path, format!("PROGRAM p\n{source}\nEND_PROGRAM\n")).expect("a program");
-    path
-}
-
-fn compare(path: &PathBuf, from: &str, to: &str, more: &[&str]) -> (Option<i32>, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.arg("compare").arg(path).args(["--from", from, "--to", to, "-A", "warnings", "--budget"]);
-    command.arg(if more.contains(&"--budget") { "20000" } else { "400000" });
-    let more: Vec<&&str> = more.iter().filter(|it| !["--budget", "20000"].contains(*it)).collect();
-    let output = command.args(more).env("NO_COLOR", "1").output().expect("the command starts");
+/// The exit code, and what is printed of the verdict.
+fn compare(path: &str, from: &str, to: &str, more: &[&str]) -> (Option<i32>, String) {
+    let budget = if more.contains(&"--budget") { "20000" } else { "400000" };
+    let more = more.iter().filter(|it| !["--budget", "20000"].contains(*it));
+    let output = programs::command()
+        .args([path, "--from", from, "--to", to, "-A", "warnings", "--budget", budget])
+        .args(more)
+        .output()
+        .expect("the command starts");
     (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
@@ -203,7 +200,7 @@ fn each_kind_is_found_at_its_line() {
         let path = program(it.name, it.source);
         let (code, text) = compare(&path, it.from, it.to, &["--message-format", "json"]);
         assert_eq!(code, Some(1), "{}: {text}", it.name);
-        let of = format!("\"kind\":\"{}\",\"at\":\"{}:{}\"", it.kind, path.display(), it.line);
+        let of = format!("\"kind\":\"{}\",\"at\":\"{}:{}\"", it.kind, path, it.line);
         let found =
             text.lines().find(|line| line.contains(&of) && line.contains(&format!("\"counter\":\"{}\"", it.subject)));
         let found = found.unwrap_or_else(|| panic!("{}: no {of}\n{text}", it.name));
@@ -227,13 +224,12 @@ big := n + k; wide := big > 40000;";
         for shown in ["hit", "c.Q", "b"] {
             let (code, text) = compare(&path, from, to, &["--vars", shown]);
             assert_eq!(code, Some(1), "{text}");
-            let reason =
-                format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path.display());
+            let reason = format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path);
             assert!(text.contains(&reason) && !text.contains("(variable, "), "{text}");
         }
     }
     let (_, text) = compare(&path, "iec", "codesys", &["--vars", "wide"]);
-    assert!(text.contains(&format!("`wide` follows from `big` (width, {}:7): ", path.display())), "{text}");
+    assert!(text.contains(&format!("`wide` follows from `big` (width, {}:7): ", path)), "{text}");
 }
 
 /// What is the same on both systems is not said to differ, and what follows from a counter's trap fails no more than that.
@@ -241,7 +237,7 @@ big := n + k; wide := big > 40000;";
 fn what_does_not_differ_is_not_found() {
     let timer = PLANTED.iter().find(|it| it.name == "timer").expect("it is planted");
     let path = program("accepted", timer.source);
-    let accept = folder().join("accepted.txt");
+    let accept = OWN.path().join("accepted.txt");
     std::fs::write(&accept, "c 2: nobody reads the count past its preset\nc 1: it is fed edges\n").expect("a file");
     let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(0), "{text}");
@@ -259,7 +255,7 @@ fn what_does_not_differ_is_not_found() {
 #[test]
 fn what_is_not_accepted_fails() {
     let accept = |name: &str, lines: &str| {
-        let path = folder().join(format!("{name}.txt"));
+        let path = OWN.path().join(format!("{name}.txt"));
         std::fs::write(&path, lines).expect("a file");
         path.display().to_string()
     };
@@ -280,12 +276,12 @@ c(s, FALSE, 3); y := CONCAT(y, 'aaaaaaaaaa'); q := LEN(y) > 90;",
     let declared = "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR VAR_OUTPUT x : BOOL; END_VAR\n";
     let one = program("one_text", &format!("{declared}c(s, FALSE, 3); x := c.CV = 1 AND NOT s;"));
     let other = program("other_text", &format!("{declared}c(s, FALSE, 3); x := FALSE;"));
-    let against = ["--accept", &traps, "--against", &other.display().to_string()];
+    let against = ["--accept", &traps, "--against", &other];
     let (code, text) = compare(&one, "iec", "cscape", &against);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("`x` (variable, ") && text.contains("None of the traps explains it"), "{text}");
     let known = accept("known", "* 1: ok\n* 2: ok\nx variable: it has no lamp\n");
-    let against = ["--accept", &known, "--against", &other.display().to_string()];
+    let against = ["--accept", &known, "--against", &other];
     let (code, text) = compare(&one, "iec", "cscape", &against);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("Beyond it, and what follows from it, the two are equal"), "{text}");
@@ -299,7 +295,7 @@ fn nothing_found_is_not_accepted() {
         "VAR_INPUT v, w : DINT; END_VAR VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
 IF v * v + w * w = 20193797 AND v > 100 AND w > 100 THEN y := CONCAT(y, 'aaaaaaaaaa'); END_IF q := LEN(y) > 90;",
     );
-    let accept = folder().join("nobody.txt");
+    let accept = OWN.path().join("nobody.txt");
     std::fs::write(&accept, "* 1: nobody\n").expect("a file");
     let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(4), "{text}");
@@ -316,7 +312,7 @@ fn what_is_declared_with_what_is_accepted_is_not() {
             "{declared}c[1](s, c[1].CV > 2, 2); c[2](s, c[2].CV > 2, 9); over := c[1].CV > 2; alarm := c[2].CV > 2;"
         ),
     );
-    let accept = folder().join("beside.txt");
+    let accept = OWN.path().join("beside.txt");
     std::fs::write(&accept, "c[1] 15: nobody reads it\nover output: it is not wired\n").expect("a file");
     let arguments = ["--accept", &accept.display().to_string()];
     let (code, text) = compare(&path, "iec", "openplc", &arguments);
@@ -353,7 +349,7 @@ fn a_name_that_changes_is_one_whatever_the_lint_says() {
 #[test]
 fn an_assumption_lies_within_the_subrange() {
     let path = program("subrange", "VAR_INPUT t : INT(1..9); END_VAR VAR o : BOOL; END_VAR\no := t > 3;");
-    let assume = folder().join("beyond_subrange.txt");
+    let assume = OWN.path().join("beyond_subrange.txt");
     std::fs::write(&assume, "t 20..30\n").expect("a file");
     let (code, _) = compare(&path, "iec", "cscape", &["--assume", &assume.display().to_string()]);
     assert_eq!(code, Some(2));
@@ -369,7 +365,7 @@ e(CLK := p); c(e.Q{guard}, l, 2); low := c.CV < 0;"
         )
     };
     let (plain, guarded) = (program("unguarded", &text("")), program("guarded", &text(" AND c.CV > 0")));
-    let (code, text) = compare(&plain, "iec", "iec", &["--against", &guarded.display().to_string()]);
+    let (code, text) = compare(&plain, "iec", "iec", &["--against", &guarded]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("None of the traps explains it") && !text.contains("reachable after"), "{text}");
 }
@@ -379,7 +375,7 @@ e(CLK := p); c(e.Q{guard}, l, 2); low := c.CV < 0;"
 fn a_kind_is_accepted_by_its_name() {
     let retention = PLANTED.iter().find(|it| it.name == "retention").expect("it is planted");
     let path = program("accepted_kind", retention.source);
-    let accept = folder().join("accepted_kind.txt");
+    let accept = OWN.path().join("accepted_kind.txt");
     std::fs::write(&accept, "seen retention: the plant is never stopped while it runs\n").expect("a file");
     let (code, text) = compare(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(0), "{text}");
@@ -398,10 +394,10 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     assert_eq!(code, Some(1), "{text}");
     for line in ["LOGIX has no TON (`t`)", "LOGIX has no SR (`latch`): there it is SETD", "LOGIX has no WORD (`mask`)"]
     {
-        assert!(text.contains(&format!("{}:3: {line}", path.display())), "{line}\n{text}");
+        assert!(text.contains(&format!("{}:3: {line}", path)), "{line}\n{text}");
     }
     let (_, json) = compare(&path, "codesys", "logix", &["--message-format", "json"]);
-    let found = format!("\"kind\":\"missing\",\"at\":\"{}:3\",\"counter\":\"mask\"", path.display());
+    let found = format!("\"kind\":\"missing\",\"at\":\"{}:3\",\"counter\":\"mask\"", path);
     assert!(json.contains(&found), "{json}");
     let wide = program(
         "second_edition",
@@ -417,11 +413,9 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
         "{text}"
     );
     let path = program("no_ctud", "VAR_INPUT a : BOOL; END_VAR\nVAR c : CTUD; END_VAR\nc(a, FALSE, FALSE, FALSE, 3);");
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    let output =
-        command.arg("compare").arg(&path).args(["--from", "iec", "--to", "cscape"]).output().expect("it starts");
-    assert_eq!(output.status.code(), Some(1));
-    assert!(String::from_utf8_lossy(&output.stderr).contains("no_ctud.st:3:"), "{output:?}");
+    let (code, text) = programs::compare(&[&path, "--from", "iec", "--to", "cscape"]);
+    assert_eq!(code, Some(1));
+    assert!(text.contains("no_ctud.st:3:"), "{text}");
 }
 
 /// What the event itself parts is the finding, also where the scan after it hides that; not what follows from it.
@@ -439,7 +433,7 @@ m := i;",
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("`m` (retention") && text.contains("  reachable after 2 scans: trap 11"), "{text}");
     assert!(!text.contains("`keep` (retention"), "both systems keep it:\n{text}");
-    let accept = folder().join("lost_by_an_event.txt");
+    let accept = OWN.path().join("lost_by_an_event.txt");
     std::fs::write(&accept, "m 11: the plant is never stopped while it runs\n").expect("a file");
     let (code, text) = compare(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
     // The search may end before every state was seen.
@@ -451,13 +445,12 @@ m := i;",
 fn a_reader_that_leaves_does_not_change_the_verdict() {
     let path = program("left_early", "VAR_INPUT i : BOOL; END_VAR\nVAR c : CTU; END_VAR\nc(CU := i, PV := 2);");
     let command = |arguments: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_staunch"));
         let (reader, writer) = std::io::pipe().expect("a pipe");
         drop(reader);
         command.args(arguments).stdout(writer.try_clone().expect("a handle")).stderr(writer);
         command.status().expect("it starts").code()
     };
-    let path = path.display().to_string();
     assert_eq!(command(&["compare", &path, "--from", "iec", "--to", "codesys"]), Some(1));
     assert_eq!(command(&["check", &path]), Some(0));
     assert_eq!(command(&["check", &path, "--dialect", "logix"]), Some(1));

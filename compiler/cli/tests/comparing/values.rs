@@ -1,26 +1,12 @@
 //! Values that are no numbers: texts as inputs, references, and instances that a PROGRAM is given.
 
-use std::path::PathBuf;
-use std::process::Command;
+use super::programs::{self, Folder};
 
-fn folder() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("compare_values");
-    std::fs::create_dir_all(&folder).expect("a folder for the programs");
-    folder
-}
-
-fn written(name: &str, text: &str) -> String {
-    let path = folder().join(name);
-    std::fs::write(&path, text).expect("a file");
-    path.display().to_string()
-}
+const OWN: Folder = Folder("values");
 
 fn compare(path: &str, (from, to): (&str, &str), more: &[&str]) -> (Option<i32>, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_staunch"));
-    command.args(["compare", path, "--from", from, "--to", to, "-A", "warnings", "--budget", "400000"]);
-    let output = command.args(more).env("NO_COLOR", "1").output().expect("the command starts");
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code(), String::from_utf8_lossy(&text).into_owned())
+    let arguments = [path, "--from", from, "--to", to, "-A", "warnings", "--budget", "400000"];
+    programs::compare(&[&arguments[..], more].concat())
 }
 
 fn order(name: &str, declared: &str, condition: &str) -> String {
@@ -28,7 +14,7 @@ fn order(name: &str, declared: &str, condition: &str) -> String {
     let text = format!(
         "PROGRAM p\nVAR_INPUT part : BOOL; END_VAR\nVAR_OUTPUT n : INT; END_VAR\nVAR c : CTU; END_VAR\n{declared}\n{body}\nEND_PROGRAM\n"
     );
-    written(name, &text)
+    OWN.written(name, &text)
 }
 
 /// A counter that only a text lets count: trap 1 shows in its second scan.
@@ -49,7 +35,7 @@ fn a_text_is_one_that_the_program_compares_it_with() {
         ("outside.st", "VAR code : STRING[20]; END_VAR", "code = 'START'"),
     ];
     for (name, declared, condition) in asked {
-        let assumed = written("input.txt", "input code\n");
+        let assumed = OWN.written("input.txt", "input code\n");
         let (code, text) = compare(&order(name, declared, condition), ("iec", "cscape"), &["--assume", &assumed]);
         assert!(code == Some(1) && text.contains("differ after 2 scans"), "{name}: {text}");
     }
@@ -84,8 +70,8 @@ n := c.CV;
 END_PROGRAM
 "
         );
-        let path = written(name, &text);
-        let saved = folder().join("followed.csv").display().to_string();
+        let path = OWN.written(name, &text);
+        let saved = OWN.path().join("followed.csv").display().to_string();
         let (code, text) = compare(&path, ("iec", "cscape"), &["--vars", "n", "--save-stimulus", &saved]);
         assert!(code == Some(1) && text.contains("differ after 2 scans"), "{name}: {text}");
         assert!(text.lines().any(|it| it.split_whitespace().eq(["1", value, "1", "1"])), "{name}: {text}");
@@ -97,7 +83,7 @@ END_PROGRAM
 /// Texts among bits that others share have their own names: as what differs, as inputs, and in a stimulus.
 #[test]
 fn a_text_among_shared_bits_is_one() {
-    let path = written(
+    let path = OWN.written(
         "shared_text.st",
         "PROGRAM p
 VAR last AT %IB3 : BYTE; code AT %IB0 : STRING[4]; shown AT %QB0 : STRING[5]; bit AT %QX2.0 : BOOL; c : CTU; END_VAR
@@ -106,7 +92,7 @@ shown := CONCAT(INT_TO_STRING(c.CV), code);
 END_PROGRAM
 ",
     );
-    let saved = folder().join("shared_text.csv").display().to_string();
+    let saved = OWN.path().join("shared_text.csv").display().to_string();
     let (code, text) = compare(&path, ("iec", "cscape"), &["--vars", "shown", "--save-stimulus", &saved]);
     assert!(code == Some(1) && !text.contains("bits_of"), "{text}");
     for line in ["  scan  code  last  shown iec  shown cscape", "     2    GO     0        1GO           2GO ◀"] {
@@ -122,7 +108,7 @@ END_PROGRAM
 fn texts_that_are_compared_alone_are_covered() {
     let with = |name: &str, condition: &str, line: &str, systems| {
         let source = order(name, "VAR_INPUT code : STRING[20]; END_VAR", condition);
-        compare(&source, systems, &["--assume", &written("assumed.txt", line)])
+        compare(&source, systems, &["--assume", &OWN.written("assumed.txt", line)])
     };
     let (code, text) = with("equal.st", "code = 'START'", "code <> 'START'\n", ("iec", "cscape"));
     assert!(code == Some(0) && text.contains("that the program compares code with"), "{text}");
@@ -142,7 +128,7 @@ fn texts_that_are_compared_alone_are_covered() {
 #[test]
 fn a_text_goes_through_a_stimulus() {
     let source = order("saved.st", "VAR_INPUT code : STRING[20]; END_VAR", "code = 'a,\"b\"; c'");
-    let saved = folder().join("saved.csv").display().to_string();
+    let saved = OWN.path().join("saved.csv").display().to_string();
     let (_, first) = compare(&source, ("iec", "cscape"), &["--save-stimulus", &saved]);
     assert_eq!(
         std::fs::read_to_string(&saved).ok().as_deref(),
@@ -158,7 +144,7 @@ fn a_text_goes_through_a_stimulus() {
 fn texts_of_two_lengths_are_not_covered_where_they_are_handed_on() {
     let with = |name: &str, declared: &str, condition: &str| {
         let source = order(name, declared, condition);
-        compare(&source, ("iec", "cscape"), &["--assume", &written("no_part.txt", "not part\n")])
+        compare(&source, ("iec", "cscape"), &["--assume", &OWN.written("no_part.txt", "not part\n")])
     };
     let (code, text) = with("asked.st", "VAR_INPUT code : STRING; END_VAR", "code = 'START'");
     assert_eq!(code, Some(0), "{text}");
@@ -181,17 +167,17 @@ END_PROGRAM
 #[test]
 fn references_are_compared_by_what_they_lead_to() {
     let first = "lead : POINTER TO INT; a, b : INT;";
-    let of = |name: &str, declared: &str| written(name, &REFERRING.replace("DECLARED", declared));
+    let of = |name: &str, declared: &str| OWN.written(name, &REFERRING.replace("DECLARED", declared));
     let systems = ("codesys", "codesys");
     let original = of("here.st", first);
     let moved = of("there.st", "more : LREAL; b, a : INT; lead : POINTER TO INT;");
     let (code, text) = compare(&original, systems, &["--against", &moved]);
     assert_eq!(code, Some(0), "{text}");
-    let turned = written("turned.st", &REFERRING.replace("DECLARED", first).replace("IF left", "IF NOT left"));
+    let turned = OWN.written("turned.st", &REFERRING.replace("DECLARED", first).replace("IF left", "IF NOT left"));
     let (code, text) = compare(&original, systems, &["--against", &turned, "--vars", "lead"]);
     assert!(code == Some(1) && text.contains("FALSE             b             a ◀"), "{text}");
     let long = of("long.st", "s : STRING; lead : POINTER TO INT; a, b : INT;");
-    let (code, text) = compare(&long, ("codesys", "iec"), &["--assume", &written("no_run.txt", "no run\n")]);
+    let (code, text) = compare(&long, ("codesys", "iec"), &["--assume", &OWN.written("no_run.txt", "no run\n")]);
     assert!(code == Some(0) && !text.contains("`lead`"), "{text}");
 }
 
@@ -200,7 +186,7 @@ fn references_are_compared_by_what_they_lead_to() {
 fn a_reference_as_input_is_not_tried() {
     let text = "PROGRAM p\nVAR_INPUT lead : POINTER TO INT; END_VAR\nVAR_OUTPUT n : BOOL; END_VAR\nn := lead <> 0;\nEND_PROGRAM\n";
     let (code, text) =
-        compare(&written("given.st", text), ("codesys", "iec"), &["--assume", &written("r.txt", "no run\n")]);
+        compare(&OWN.written("given.st", text), ("codesys", "iec"), &["--assume", &OWN.written("r.txt", "no run\n")]);
     assert!(
         code == Some(4) && text.contains("inputs that are references, or of another type on the other system: lead"),
         "{text}"
@@ -224,15 +210,15 @@ s(start := part);
 total := s.n;
 END_PROGRAM
 ";
-    let (code, found) = compare(&written("station.st", text), ("iec", "cscape"), &[]);
+    let (code, found) = compare(&OWN.written("station.st", text), ("iec", "cscape"), &[]);
     assert_eq!(code, Some(0), "{found}");
-    let armed = written("armed.st", &text.replace("armed : BOOL", "armed : BOOL := TRUE"));
+    let armed = OWN.written("armed.st", &text.replace("armed : BOOL", "armed : BOOL := TRUE"));
     let (code, found) = compare(&armed, ("iec", "cscape"), &[]);
     assert!(code == Some(1) && !found.contains("s.armed"), "{found}");
     let reads = text
         .replace("s(start := part);\n", "")
         .replace("total := s.n", "IF s.start AND part THEN total := s.n; END_IF");
-    let (_, found) = compare(&written("reads.st", &reads), ("iec", "openplc"), &[]);
+    let (_, found) = compare(&OWN.written("reads.st", &reads), ("iec", "openplc"), &[]);
     assert!(found.contains("compares s.n with; nothing writes s.armed (FALSE)"), "{found}");
 }
 
@@ -247,7 +233,7 @@ rows[1].sum := a + b;
 END_PROGRAM
 ";
     let (code, text) =
-        compare(&written("rows.st", text), ("iec", "codesys"), &["--assume", &written("n.txt", "no run\n")]);
+        compare(&OWN.written("rows.st", text), ("iec", "codesys"), &["--assume", &OWN.written("n.txt", "no run\n")]);
     assert!(code == Some(1) && text.contains("`rows[1].sum` (width, ") && !text.contains("(variable, "), "{text}");
 }
 
@@ -255,7 +241,7 @@ END_PROGRAM
 #[test]
 fn texts_that_stand_for_others_are_not_assumed_away() {
     let source = order("stand_in.st", "VAR_INPUT code : STRING[8]; END_VAR", "code <> 'STOP' AND code <> ''");
-    let assumed = written("stand_in.txt", "code <> 'a'\ncode <> 'xxxxxxxx'\n");
+    let assumed = OWN.written("stand_in.txt", "code <> 'a'\ncode <> 'xxxxxxxx'\n");
     let (code, text) = compare(&source, ("iec", "openplc"), &["--assume", &assumed]);
     assert!(code == Some(2) && text.contains("it is not tried with 'a', but with"), "{text}");
 }
@@ -263,20 +249,20 @@ fn texts_that_stand_for_others_are_not_assumed_away() {
 /// A standard block that is an input is given what its input pins take; what else might be written to it is not ruled out.
 #[test]
 fn standard_blocks_that_are_inputs_are_given_their_pins() {
-    let timed = written(
+    let timed = OWN.written(
         "given_timer.st",
         "PROGRAM P\nVAR_INPUT t : TON; b : BOOL; END_VAR\nVAR_OUTPUT o : BOOL; END_VAR\nVAR k : CTU; END_VAR\n\
          k(CU := b AND t.PT = T#5s, PV := 1);\no := k.CV > 1;\nEND_PROGRAM\n",
     );
     let (code, text) = compare(&timed, ("iec", "openplc"), &["--vars", "o"]);
     assert!(code == Some(1) && text.contains("differ after 3 scans"), "{text}");
-    let counted = written(
+    let counted = OWN.written(
         "given_counters.st",
         "PROGRAM P\nVAR_INPUT c : ARRAY[1..2] OF CTU; END_VAR\nVAR_OUTPUT n : INT; END_VAR\nc[2]();\nn := c[2].CV;\nEND_PROGRAM\n",
     );
     let (code, text) = compare(&counted, ("iec", "cscape"), &[]);
     assert!(code == Some(1) && text.contains("differ after"), "{text}");
-    let latched = written(
+    let latched = OWN.written(
         "given_latch.st",
         "PROGRAM P\nVAR_INPUT s : SR; b : BOOL; END_VAR\nVAR_OUTPUT o : BOOL; END_VAR\nVAR c : CTU; END_VAR\n\
          c(CU := s.Q1, PV := 2);\no := c.CV > 2;\nEND_PROGRAM\n",
@@ -288,7 +274,7 @@ fn standard_blocks_that_are_inputs_are_given_their_pins() {
 /// A run that connects its PROGRAM with global variables has the PROGRAM's variables by their names.
 #[test]
 fn variables_of_a_connected_run_are_named() {
-    let source = written(
+    let source = OWN.written(
         "connected.st",
         "VAR_GLOBAL g : BOOL; END_VAR\nPROGRAM Pa\nVAR_INPUT b : BOOL; END_VAR\nVAR_OUTPUT o : BOOL; END_VAR\nVAR c : CTU; END_VAR\n\
          c(CU := b, PV := 3);\no := c.CV = 4;\nEND_PROGRAM\n\
@@ -302,7 +288,7 @@ fn variables_of_a_connected_run_are_named() {
 /// An output that shares its bits on one system, and is written by another name, is one of its own on the other.
 #[test]
 fn an_output_that_one_system_alone_has_is_not_passed_over() {
-    let source = written(
+    let source = OWN.written(
         "overlapping_outputs.st",
         "PROGRAM P\nVAR_INPUT k : BOOL; END_VAR\nVAR w AT %QW0 : WORD; b AT %QX0.0 : BOOL; END_VAR\n\
          IF k THEN w := WORD#1; ELSE w := WORD#0; END_IF\nEND_PROGRAM\n",
