@@ -68,7 +68,7 @@ impl<'p> Frame<'p> {
 
     /// Whether a reference may lead to the place, to a part of it, or to what it is a part of.
     pub fn is_reached(&self, place: &Place) -> bool {
-        let is_in = |it: &crate::reference::Reach| it.holds(self.program, self.state, place);
+        let is_in = |it: &crate::reached::Reached| it.holds(self.program, self.state, place);
         self.program.reach.references && self.program.reached.as_ref().is_none_or(is_in)
     }
 

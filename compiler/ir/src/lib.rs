@@ -43,6 +43,7 @@ pub mod interpret;
 pub mod layout;
 pub mod loops;
 pub mod promote;
+pub mod reached;
 pub mod reference;
 pub mod shapes;
 pub mod stack;

@@ -48,7 +48,7 @@ pub struct Program {
     pub reentered: BTreeSet<StructId>,
     pub reach: Reach,
     /// Which variables references may lead to; `None` before all bodies are there.
-    pub reached: Option<crate::reference::Reach>,
+    pub reached: Option<crate::reached::Reached>,
     /// Structures that are the places of pools: the first field says whether the second is an object in use. A reference
     /// into an object that is not is a fault.
     pub places: BTreeSet<StructId>,

@@ -4,16 +4,15 @@
 pub mod escape;
 mod fixed;
 mod objects;
-mod reach;
 mod table;
 mod targets;
 
 pub use fixed::fixed;
 pub use objects::objects;
-pub use reach::{Reach, settle};
 pub use table::{table, view, wanted};
 pub use targets::{Step, Target, Targets};
 
+use crate::reached::Reached;
 use crate::{
     Argument, BlockId, Expr, ExprKind, FieldId, Location, ParamId, Place, Program, Projection, Root, Routine,
     RoutineId, StatementKind, StructId, Type, visit,
@@ -73,9 +72,15 @@ pub fn addressable(program: &Program) -> BTreeSet<(StructId, FieldId)> {
     found.variables
 }
 
+/// The variables that references may lead to.
+pub fn reach(program: &Program) -> Reached {
+    let found = Finder::search(program);
+    Reached::by(program, found.variables, &|it| found.states.contains(&it))
+}
+
 /// The variables that references may lead into: those that they may lead to, and those that hold an instance with one.
 pub fn reached(program: &Program) -> BTreeSet<(StructId, FieldId)> {
-    Reach::of(program).with_holders(program)
+    reach(program).with_holders(program)
 }
 
 /// The types of what references are followed to, each once.

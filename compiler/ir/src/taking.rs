@@ -2,17 +2,47 @@
 //! them at once; where a loop without a loop in it has few, it takes none.
 
 use crate::alias::Frame;
+use crate::loops::privatise;
+use crate::reference;
 use crate::turns::linear;
 use crate::{Block, Count, For, Location, Program, Statement, StatementKind, Taking, visit};
 
-/// Settles it for all loops of a program. What changes loops comes before it.
+/// Settles it for all loops of a program, and to which variables references lead. What changes loops, and what takes
+/// addresses, comes before it.
 pub fn settle(program: &mut Program) {
+    program.reached = Some(reference::reach(program));
+    if !program.references.is_empty() {
+        settle_counters(program);
+    }
     let loopers = loopers(program);
     for at in 0..program.routines.len() {
         let mut body = std::mem::take(&mut program.routines[at].body);
         let settler = Settler { frame: Frame::of(program, &program.routines[at]), loopers: &loopers };
         settler.block(&mut body);
         program.routines[at].body = body;
+    }
+}
+
+/// Counters to which no reference leads may be private after all.
+fn settle_counters(program: &mut Program) {
+    for at in 0..program.routines.len() {
+        let mut body = std::mem::take(&mut program.routines[at].body);
+        privatise(&Frame::of(program, &program.routines[at]), &mut body);
+        leave_turns(&mut body);
+        program.routines[at].body = body;
+    }
+}
+
+/// Loops that are short, now that their counters are private, take no turns.
+fn leave_turns(block: &mut [Statement]) {
+    for statement in block {
+        statement.kind.blocks_mut().into_iter().for_each(|it| leave_turns(it));
+        if let StatementKind::For(it) = &mut statement.kind
+            && it.takes_turns()
+            && it.is_short()
+        {
+            it.body.remove(0);
+        }
     }
 }
 

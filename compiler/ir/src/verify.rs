@@ -13,7 +13,7 @@ mod statement;
 mod taking;
 mod types;
 
-use crate::reference::Reach;
+use crate::reference;
 use crate::{Location, Program};
 use core::fmt::{self, Display};
 
@@ -50,7 +50,7 @@ struct Verifier<'p> {
 impl Verifier<'_> {
     fn reach(&mut self) {
         let Some(known) = &self.program.reached else { return };
-        let is_covered = known.covers(&Reach::of(self.program));
+        let is_covered = known.covers(&reference::reach(self.program));
         self.within = "references".to_owned();
         self.require(is_covered, Location::default(), "the address of a variable that they are said not to reach");
     }

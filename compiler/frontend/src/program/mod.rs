@@ -59,7 +59,6 @@ pub(crate) fn assemble<'s>(
     let settled = staunch_ir::shapes::settle(program);
     let settled = settled.map_err(|at| declarations.report_too_many_shapes(at)).ok()?;
     declarations.program = staunch_ir::reference::fixed(settled);
-    staunch_ir::reference::settle(&mut declarations.program);
     staunch_ir::taking::settle(&mut declarations.program);
     declarations.check_size()?;
     Some(std::mem::replace(&mut declarations.program, empty_program(Vec::new())))

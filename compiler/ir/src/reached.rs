@@ -1,50 +1,49 @@
 //! What references may lead to: a set, so that the address of one variable costs nothing where another is used.
 
-use super::{Finder, holds};
-use crate::{FieldId, Place, Program, Projection, Root, Statement, StatementKind, StructId, Type};
+use crate::{FieldId, Place, Program, Projection, Root, StructId, Type};
 use std::collections::BTreeSet;
 
 /// The variables that references may lead to, and so read and write: fields of the globals and of states.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Reach {
+pub struct Reached {
     /// Those whose addresses are taken, and all variables of the instances in them.
     variables: BTreeSet<(StructId, FieldId)>,
     /// The states that have such variables.
     owners: BTreeSet<StructId>,
 }
 
-impl Reach {
-    pub fn of(program: &Program) -> Self {
-        let mut reach = Self::default();
-        if program.references.is_empty() {
-            return reach;
+impl Reached {
+    /// By the variables whose addresses are taken. A type of which `is_state` holds is an instance's state.
+    pub fn by(
+        program: &Program,
+        variables: BTreeSet<(StructId, FieldId)>,
+        is_state: &dyn Fn(StructId) -> bool,
+    ) -> Self {
+        let mut reached = Self::default();
+        for (owner, field) in variables {
+            reached.add(program, is_state, owner, field);
         }
-        let mut finder = Finder::search(program);
-        for (owner, field) in std::mem::take(&mut finder.variables) {
-            reach.add(&finder, owner, field);
-        }
-        reach
+        reached
     }
 
-    fn add(&mut self, finder: &Finder<'_>, owner: StructId, field: FieldId) {
+    fn add(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool, owner: StructId, field: FieldId) {
         if self.variables.insert((owner, field)) {
             self.owners.insert(owner);
-            self.add_inside(finder, finder.program.structure(owner).fields[field.index()].ty);
+            self.add_inside(program, is_state, program.structure(owner).fields[field.index()].ty);
         }
     }
 
-    fn add_inside(&mut self, finder: &Finder<'_>, ty: Type) {
+    fn add_inside(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool, ty: Type) {
         match ty {
             Type::Struct(id) => {
-                let is_state = finder.states.contains(&id);
-                for (at, field) in finder.program.structure(id).fields.iter().enumerate() {
-                    match is_state {
-                        true => self.add(finder, id, FieldId::next(at)),
-                        false => self.add_inside(finder, field.ty),
+                for (at, field) in program.structure(id).fields.iter().enumerate() {
+                    match is_state(id) {
+                        true => self.add(program, is_state, id, FieldId::next(at)),
+                        false => self.add_inside(program, is_state, field.ty),
                     }
                 }
             }
-            Type::Array(id) => self.add_inside(finder, finder.program.array(id).element),
+            Type::Array(id) => self.add_inside(program, is_state, program.array(id).element),
             Type::Elementary(_)
             | Type::Subrange(..)
             | Type::Reference(_)
@@ -77,49 +76,28 @@ impl Reach {
                 None => return true,
             }
         }
-        holds(program, ty, &self.owners)
+        self.is_owner_in(program, ty)
     }
 
     /// With the variables of states that hold an instance with one.
-    pub fn with_holders(self, program: &Program) -> BTreeSet<(StructId, FieldId)> {
-        let Self { variables: mut all, owners } = self;
+    pub fn with_holders(&self, program: &Program) -> BTreeSet<(StructId, FieldId)> {
+        let mut all = self.variables.clone();
         let states = program.classes.iter().map(|it| it.state).chain([program.globals]);
         for state in states.chain(program.places.iter().copied()) {
             let fields = program.structure(state).fields.iter().enumerate();
-            let holders = fields.filter(|(_, it)| holds(program, it.ty, &owners));
+            let holders = fields.filter(|(_, it)| self.is_owner_in(program, it.ty));
             all.extend(holders.map(|(at, _)| (state, FieldId::next(at))));
         }
         all
     }
 
+    /// Whether a variable of the type is, or holds, an instance with such a variable.
+    fn is_owner_in(&self, program: &Program, ty: Type) -> bool {
+        program.holds(ty, |it| matches!(it, Type::Struct(id) if self.owners.contains(&id)))
+    }
+
     /// Whether it has all that another has.
     pub fn covers(&self, other: &Self) -> bool {
         other.variables.is_subset(&self.variables)
-    }
-}
-
-/// Finds what references of a program may lead to. What is known of the program from here on goes by it: whose addresses
-/// are taken must not become more.
-pub fn settle(program: &mut Program) {
-    program.reached = Some(Reach::of(program));
-    for at in 0..program.routines.len() {
-        let mut body = std::mem::take(&mut program.routines[at].body);
-        let frame = crate::alias::Frame::of(program, &program.routines[at]);
-        crate::loops::privatise(&frame, &mut body);
-        leave_turns(&mut body);
-        program.routines[at].body = body;
-    }
-}
-
-/// Loops that are short, now that their counters are private, take no turns.
-fn leave_turns(block: &mut [Statement]) {
-    for statement in block {
-        statement.kind.blocks_mut().into_iter().for_each(|it| leave_turns(it));
-        if let StatementKind::For(it) = &mut statement.kind
-            && it.takes_turns()
-            && it.is_short()
-        {
-            it.body.remove(0);
-        }
     }
 }
