@@ -92,7 +92,7 @@ impl FaultKind {
             Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",
             Self::Raised => "an exception was raised",
             Self::Recursion => "a METHOD was called again before it had ended",
-            Self::NotDecimal => "not a BCD number, or one with more digits than it holds",
+            Self::NotDecimal => "not a BCD number of so many digits",
         }
     }
 
