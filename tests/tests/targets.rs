@@ -99,7 +99,8 @@ fn staunch() -> Command {
         let profile = test.parent().and_then(Path::parent).unwrap();
         let name = profile.file_name().unwrap().to_string_lossy().replace("debug", "dev");
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--quiet", "--package", "staunch", "--profile", &name, "--target-dir"]);
+        // With the features of the whole workspace, as its tests are compiled: alone it would be compiled again.
+        cargo.args(["build", "--quiet", "--workspace", "--bin", "staunch", "--profile", &name, "--target-dir"]);
         succeed(cargo.arg(profile.parent().unwrap()).current_dir(project()));
         profile.join("staunch")
     });

@@ -333,6 +333,7 @@ pub(crate) const UNITS: &[Unit] = units! {
     Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc Openplc4];
     Type     "SEMA"             "iec_sema"         [Iec Openplc Openplc4];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
+    Function "RESET_TIMER"      "reset_timer"      [Siemens] "IEC_TIMER";
     Type     "IEC_COUNTER"      (counter!(IEC_COUNTER, INT))       [Siemens];
     Type     "IEC_SCOUNTER"     (counter!(IEC_SCOUNTER, SINT))     [Siemens];
     Type     "IEC_DCOUNTER"     (counter!(IEC_DCOUNTER, DINT))     [Siemens];

@@ -69,7 +69,7 @@ pub use program::{
     View,
 };
 pub use statement::{Argument, Arm, Block, Count, For, Statement, StatementKind, Step, Taking};
-pub use uses::{Use, Uses};
+pub use uses::{Part, Use, Uses};
 
 pub use types::{
     Array, ArrayId, BlockId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, InterfaceId, Overlay, RefKind,

@@ -15,7 +15,37 @@ pub enum Use {
     /// From one class to another, by a function or by itself.
     Conversion(Class, Class),
     /// A part of the language: `VAR_TEMP`.
-    Part(&'static str),
+    Part(Part),
+}
+
+/// A part of the language that a system may run in its own way.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    /// A call with an input EN.
+    Enable,
+    /// A VAR_TEMP of a block or a PROGRAM.
+    Temp,
+    /// A FOR that leaves its counter no value beyond its limit.
+    LimitOfType,
+    /// A timer whose PT is not constant.
+    MovingPreset,
+    /// An assignment to a variable of a subrange that faults. No program notes it, since most have none.
+    Subrange,
+}
+
+impl Part {
+    pub const ALL: [Self; 5] = [Self::Enable, Self::Temp, Self::LimitOfType, Self::MovingPreset, Self::Subrange];
+
+    /// In words, for tables and messages.
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Enable => "EN",
+            Self::Temp => "VAR_TEMP",
+            Self::LimitOfType => "FOR to the limit of its counter's type",
+            Self::MovingPreset => "a PT that moves",
+            Self::Subrange => "a value outside of a subrange",
+        }
+    }
 }
 
 impl Use {
@@ -23,7 +53,8 @@ impl Use {
     pub fn words(self) -> String {
         match self {
             Self::Type(it) => it.name().to_owned(),
-            Self::Function(name) | Self::Part(name) => name.to_owned(),
+            Self::Function(name) => name.to_owned(),
+            Self::Part(it) => it.words().to_owned(),
             Self::Operator(operator, class) => format!("`{operator}` of {}", class.name()),
             Self::Conversion(from, to) => format!("{} to {}", from.name(), to.name()),
         }

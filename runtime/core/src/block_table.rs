@@ -187,6 +187,8 @@ macro_rules! for_each_block {
             S7 "CTD_ULINT_LD_EDGE" s7::CtdLdEdge<u64> {} #[option LdEdge for "CTD_ULINT"] #[pin "LOAD" is "LD", "QD" is "Q"] #[loads_on_edges] { plain "" call staunch_s7_ctd_ulint_ld_edge; }
             S7 "CTUD_ULINT_LD_EDGE" s7::CtudLdEdge<u64> {} #[option LdEdge for "CTUD_ULINT"] #[pin "LOAD" is "LD"] #[loads_on_edges] { plain "" call staunch_s7_ctud_ulint_ld_edge; }
 
+            S7 "TONR" s7::Tonr {} #[also "TONR_TIME"] #[in Logix "RTOR with an FBD_TIMER"] { timed "" call staunch_s7_tonr; }
+
             Logix "COUNTER" logix::Counter {} {
                 rung "CTU" ctu staunch_logix_counter_ctu, prescan prescan_ctu staunch_logix_counter_prescan_ctu;
                 rung "CTD" ctd staunch_logix_counter_ctd, prescan prescan_ctd staunch_logix_counter_prescan_ctd;

@@ -41,10 +41,12 @@ pub enum FaultKind {
     Raised = 16,
     /// References led METHODs back to an instance whose METHOD had not ended.
     Recursion = 17,
+    /// Four bits are no decimal digit, or a number has more digits than a BCD number of S7 holds.
+    NotDecimal = 18,
 }
 
 impl FaultKind {
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::DivideByZero,
         Self::IndexOutOfRange,
         Self::SubrangeViolated,
@@ -62,6 +64,7 @@ impl FaultKind {
         Self::NotOfPool,
         Self::Raised,
         Self::Recursion,
+        Self::NotDecimal,
     ];
 
     /// The fault with this code, as native code returns it.
@@ -89,6 +92,7 @@ impl FaultKind {
             Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",
             Self::Raised => "an exception was raised",
             Self::Recursion => "a METHOD was called again before it had ended",
+            Self::NotDecimal => "not a BCD number of so many digits",
         }
     }
 
@@ -109,7 +113,8 @@ impl FaultKind {
             | Self::NegativeTimer
             | Self::Deleted
             | Self::NotOfPool
-            | Self::Raised => true,
+            | Self::Raised
+            | Self::NotDecimal => true,
         }
     }
 }

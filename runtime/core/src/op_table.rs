@@ -83,6 +83,12 @@ macro_rules! for_each_op {
             // Decimal digits of four bits each.
             FromBcd     "_FROM_BCD" from_bcd  (IN: T) -> T                           [ANY_INT as long]            total;
             ToBcd       "_TO_BCD"  to_bcd     (IN: T) -> T                           [ANY_INT as long]            total;
+            // Those of S7: so many digits, and a sign in four bits above them.
+            FromSignedBcd "_FROM_BCD_S" from_signed_bcd (IN: T, DIGITS: ANY_INT) -> T [ANY_INT as long]           faults;
+            ToSignedBcd "_TO_BCD_S" to_signed_bcd (IN: T, DIGITS: ANY_INT) -> T      [ANY_INT as long]            faults;
+            // ENCO and FRAC of S7.
+            FirstBit    "_ENCO"    first_bit  (IN: T) -> INT                         [ANY_BIT as integer]         total;
+            Fraction    "_FRAC"    fraction   (IN: T) -> T                           [ANY_REAL as real]           total;
             Eq          "EQ"       eq         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;
             Ne          "NE"       ne         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total;
             Lt          "LT"       lt         (IN1: T, IN2: T) -> BOOL               [ANY_ELEMENTARY as any]      total extensible;

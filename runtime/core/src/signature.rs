@@ -101,8 +101,17 @@ macro_rules! kind {
     (INT) => {
         $crate::Kind::Is($crate::Elementary::Int)
     };
+    (DINT) => {
+        $crate::Kind::Is($crate::Elementary::Dint)
+    };
     (LINT) => {
         $crate::Kind::Is($crate::Elementary::Lint)
+    };
+    (WORD) => {
+        $crate::Kind::Is($crate::Elementary::Word)
+    };
+    (DWORD) => {
+        $crate::Kind::Is($crate::Elementary::Dword)
     };
     (ULINT) => {
         $crate::Kind::Is($crate::Elementary::Ulint)
@@ -175,6 +184,9 @@ macro_rules! class {
     };
     (ANY_DATE) => {
         $crate::Class::Date
+    };
+    (ANY_DURATION) => {
+        $crate::Class::Duration
     };
     (ANY_STRING) => {
         $crate::Class::String

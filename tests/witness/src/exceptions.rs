@@ -49,6 +49,7 @@ impl<'a> Machine<'a> {
             | FaultKind::ZeroStep
             | FaultKind::NoSuchDate
             | FaultKind::NegativeTimer
+            | FaultKind::NotDecimal
             | FaultKind::NotOfPool => "RTSEXCPT_UNKNOWN",
         };
         CODES.iter().find(|it| it.0 == name).map(|it| it.1)

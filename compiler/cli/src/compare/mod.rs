@@ -36,7 +36,7 @@ use report::{Report, picture, rejection};
 use search::tolerance::Tolerance;
 use search::world::World;
 use staunch_frontend::Dialect;
-use staunch_frontend::rules::{SUBRANGE, is_followed};
+use staunch_frontend::rules::{Part, is_followed};
 use staunch_ir::Program;
 use variants::Variant;
 use verdict::{Judged, Other, Verdict, WithoutRun, judge};
@@ -147,7 +147,7 @@ fn side_by_side(
 ) -> Result<Compared, String> {
     let args = report.args;
     let cycle = run::cycle(report.session, args.cycle.as_deref())?;
-    let checks = [args.from.dialect, args.to.dialect].map(|it| is_followed(it, SUBRANGE));
+    let checks = [args.from.dialect, args.to.dialect].map(|it| is_followed(it, Part::Subrange));
     let may_be_stored = checks[0] != checks[1] && !program.bounds.is_empty();
     let same_program = !may_be_stored && is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];

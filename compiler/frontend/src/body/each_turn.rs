@@ -1,5 +1,5 @@
-//! FOR where a system looks at the limit and the step in each turn, as C's `for` does. Where neither changes, and the step
-//! has a known sign, this is the FOR that looks at them once.
+//! FOR where a system looks at the limit and the step in each turn, as C's `for` does, and calls anew what they call. Where
+//! neither changes, nothing is called, and the step has a known sign, this is the FOR that looks at them once.
 
 use crate::dialect::rules::LoopLimit;
 use crate::expr::checker::Checker;
@@ -7,9 +7,21 @@ use crate::expr::operand::Operand;
 use crate::{Span, ast};
 use staunch_ir::{Block, Expr, For, Op, Statement, StatementKind, Step, Type, Value, alias, turns};
 
+/// What the limit and the step of a FOR do before their values are known, in each turn.
+#[derive(Debug, Default)]
+pub(super) struct Calls {
+    pub limit: Block,
+    pub step: Block,
+}
+
 impl<'s> Checker<'_, 's> {
+    /// Whether the dialect looks at the limit and the step of a FOR in each turn.
+    pub(super) fn calls_in_each_turn(&self, span: Span) -> bool {
+        self.decl.dialect(span).rules().loop_limit.choice != LoopLimit::Once
+    }
+
     /// Whether the loop runs otherwise here than one that looks at its limit and step once.
-    pub(super) fn looks_in_each_turn(&self, head: &For, by: Option<&ast::Expr<'s>>, span: Span) -> bool {
+    pub(super) fn looks_in_each_turn(&self, head: &For, calls: &Calls, by: Option<&ast::Expr<'s>>, span: Span) -> bool {
         let rule = self.decl.dialect(span).rules().loop_limit.choice;
         let changes =
             |it: &Expr| alias::changes(&self.frame(), &head.body, it) || alias::reads(&self.frame(), it, &head.counter);
@@ -17,44 +29,77 @@ impl<'s> Checker<'_, 's> {
             Step::Constant(_) => false,
             Step::Variable(step) => changes(step),
         };
+        let calls = !calls.limit.is_empty() || !calls.step.is_empty();
         match rule {
             LoopLimit::Once => false,
-            LoopLimit::EachTurn => changes(&head.last) || step_changes,
-            LoopLimit::EachTurnUpward => changes(&head.last) || step_changes || !has_sign_in_text(head, by),
+            LoopLimit::EachTurn => calls || changes(&head.last) || step_changes,
+            LoopLimit::EachTurnUpward => calls || changes(&head.last) || step_changes || !has_known_sign(head, by),
         }
     }
 
     /// The loop as C has it: test, body, step.
-    pub(super) fn loop_by_turns(&mut self, head: For, by: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
+    pub(super) fn loop_by_turns(
+        &mut self,
+        head: For,
+        calls: Calls,
+        by: Option<&ast::Expr<'s>>,
+        span: Span,
+    ) -> Option<()> {
         let at = self.at(span);
+        let is_upward = self.decl.dialect(span).rules().loop_limit.choice == LoopLimit::EachTurnUpward;
+        let goes_up =
+            if is_upward && !has_known_sign(&head, by) { Expr::bool(true, at) } else { self.goes_up(&head, span)? };
+        // The sign of a step is looked at before the limit; STruC++ goes by the text alone.
+        let mut body = if is_upward { Block::new() } else { calls.step.clone() };
+        body.extend(calls.limit);
+        body.push(self.leave_at_limit(&head, goes_up, span)?);
+        let turn = body.len();
+        let mut continuing = calls.step;
+        continuing.push(self.next_turn(&head, span)?);
+        self.push(StatementKind::Assign { target: head.counter, value: head.first }, span);
+        body.extend(head.body);
+        if !turns::divides(&self.frame(), &body, &continuing) {
+            body.insert(turn, Statement::new(StatementKind::Turn, at));
+        }
+        self.push(StatementKind::Loop { body, continuing, count: None }, span);
+        Some(())
+    }
+
+    /// Whether the step is above 0.
+    fn goes_up(&mut self, head: &For, span: Span) -> Option<Expr> {
         let ty = head.counter.ty;
-        let count = Expr::load(head.counter.clone(), at);
-        let is_up = match self.decl.dialect(span).rules().loop_limit.choice {
-            LoopLimit::EachTurnUpward if !has_sign_in_text(&head, by) => Expr::bool(true, at),
-            LoopLimit::Once | LoopLimit::EachTurn | LoopLimit::EachTurnUpward => match &head.step {
-                Step::Constant(step) => Expr::bool(*step > 0, at),
-                Step::Variable(step) => {
-                    let zero = self.coerce(Operand::Integer(0), ty, span)?;
-                    self.apply(Op::Gt, ty, vec![step.clone(), zero], Type::BOOL, span)?
-                }
-            },
-        };
-        self.push(StatementKind::Assign { target: head.counter.clone(), value: head.first }, span);
-        let mut test = |op| self.apply(op, ty, vec![count.clone(), head.last.clone()], Type::BOOL, span);
-        let (below, above) = (test(Op::Le)?, test(Op::Ge)?);
-        let leave = |this: &mut Self, stays: Expr| -> Option<Statement> {
-            let ends = this.apply(Op::Not, Type::BOOL, vec![stays], Type::BOOL, span)?;
+        match &head.step {
+            Step::Constant(step) => Some(Expr::bool(*step > 0, self.at(span))),
+            Step::Variable(step) => {
+                let zero = self.coerce(Operand::Integer(0), ty, span)?;
+                self.apply(Op::Gt, ty, vec![step.clone(), zero], Type::BOOL, span)
+            }
+        }
+    }
+
+    /// Leaves the loop where the counter is beyond the limit.
+    fn leave_at_limit(&mut self, head: &For, goes_up: Expr, span: Span) -> Option<Statement> {
+        let (at, ty) = (self.at(span), head.counter.ty);
+        let mut leave = |stays: Op| -> Option<Statement> {
+            let count = Expr::load(head.counter.clone(), at);
+            let stays = self.apply(stays, ty, vec![count, head.last.clone()], Type::BOOL, span)?;
+            let ends = self.apply(Op::Not, Type::BOOL, vec![stays], Type::BOOL, span)?;
             let then = vec![Statement::new(StatementKind::Exit, at)];
             Some(Statement::new(StatementKind::If { condition: ends, then, otherwise: Vec::new() }, at))
         };
-        let test = match is_up.as_const() {
-            Some(Value::Bool(true)) => leave(self, below)?,
-            Some(_) => leave(self, above)?,
+        match goes_up.as_const() {
+            Some(Value::Bool(true)) => leave(Op::Le),
+            Some(_) => leave(Op::Ge),
             None => {
-                let (then, otherwise) = (vec![leave(self, below)?], vec![leave(self, above)?]);
-                Statement::new(StatementKind::If { condition: is_up, then, otherwise }, at)
+                let (then, otherwise) = (vec![leave(Op::Le)?], vec![leave(Op::Ge)?]);
+                Some(Statement::new(StatementKind::If { condition: goes_up, then, otherwise }, at))
             }
-        };
+        }
+    }
+
+    /// Adds the step to the counter.
+    fn next_turn(&mut self, head: &For, span: Span) -> Option<Statement> {
+        let (at, ty) = (self.at(span), head.counter.ty);
         // An unsigned counter has no negative number to add.
         let (op, step) = match &head.step {
             Step::Constant(step) if *step < 0 && head.range.0 == 0 => {
@@ -63,20 +108,15 @@ impl<'s> Checker<'_, 's> {
             Step::Constant(step) => (Op::Add, self.coerce(Operand::Integer(*step), ty, span)?),
             Step::Variable(step) => (Op::Add, step.clone()),
         };
+        let count = Expr::load(head.counter.clone(), at);
         let next = self.apply(op, ty, vec![count, step], ty, span)?;
-        let continuing: Block = vec![Statement::assign(head.counter.clone(), next, at)];
-        let mut body = vec![test];
-        body.extend(head.body);
-        if !turns::divides(&self.frame(), &body, &continuing) {
-            body.insert(1, Statement::new(StatementKind::Turn, at));
-        }
-        self.push(StatementKind::Loop { body, continuing, count: None }, span);
-        Some(())
+        Some(Statement::assign(head.counter.clone(), next, at))
     }
 }
 
-/// Whether the step is a number as it is written, or 1: STruC++ counts down for a negative number alone.
-fn has_sign_in_text(head: &For, by: Option<&ast::Expr<'_>>) -> bool {
+/// Whether the step is a literal, with a sign or without, or 1: STruC++ counts down for a negative literal alone, and not for
+/// one in parentheses.
+fn has_known_sign(head: &For, by: Option<&ast::Expr<'_>>) -> bool {
     let is_number = |it: &ast::Expr<'_>| match &it.kind {
         ast::ExprKind::Literal(_) => true,
         ast::ExprKind::Unary(_, inner) => matches!(inner.kind, ast::ExprKind::Literal(_)),

@@ -34,6 +34,7 @@ const fn exception(kind: FaultKind) -> u32 {
         | FaultKind::NegativeTimer
         | FaultKind::NotOfPool
         | FaultKind::Raised
+        | FaultKind::NotDecimal
         // Not caught.
         | FaultKind::LoopBudget
         | FaultKind::AssertionFailed

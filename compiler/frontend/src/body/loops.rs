@@ -1,7 +1,8 @@
 //! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
+use super::each_turn::Calls;
 use crate::diagnostic::wording::article;
-use crate::dialect::rules::{LIMIT, Use, is_followed};
+use crate::dialect::rules::{Part, Use, is_followed};
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::types::counter::{Counter, Shown};
@@ -86,7 +87,7 @@ impl<'s> Checker<'_, 's> {
         body: &[ast::Statement<'s>],
         span: Span,
     ) -> Option<()> {
-        let Some((mut head, shown)) = self.for_head(counter, from, to, by) else {
+        let Some((mut head, shown, calls)) = self.for_head(counter, from, to, by) else {
             // The body may hold mistakes of its own.
             self.loop_body(body);
             return None;
@@ -96,8 +97,8 @@ impl<'s> Checker<'_, 's> {
         self.counters.push(Counter { head: head.clone(), shown: shown.clone(), depth: self.loops + 1 });
         head.body = self.for_body(shown.as_ref(), &head.counter, body, counter.span);
         self.counters.pop();
-        if shown.is_none() && self.looks_in_each_turn(&head, by, span) {
-            return self.loop_by_turns(head, by, span);
+        if shown.is_none() && self.looks_in_each_turn(&head, &calls, by, span) {
+            return self.loop_by_turns(head, calls, by, span);
         }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
         let local = head.counter.clone();
@@ -129,7 +130,7 @@ impl<'s> Checker<'_, 's> {
         from: &ast::Expr<'s>,
         to: &ast::Expr<'s>,
         by: Option<&ast::Expr<'s>>,
-    ) -> Option<(For, Option<Shown>)> {
+    ) -> Option<(For, Option<Shown>, Calls)> {
         let found = self.place_or_view(counter);
         let Some(found) = found.filter(|it| self.writable(it, counter.span)) else {
             for part in [from, to].into_iter().chain(by) {
@@ -157,8 +158,17 @@ impl<'s> Checker<'_, 's> {
         }
         let mark = self.block.len();
         let mut last = self.value(to, place.ty.read());
-        let mut done: Vec<_> = last.iter_mut().collect();
-        let step = self.after(&mut done, |this| this.step(by, ty));
+        let after_limit = self.block.len();
+        let is_each_turn = shown.is_none() && self.calls_in_each_turn(to.span);
+        let step = match is_each_turn {
+            true => self.step(by, ty),
+            false => self.after(&mut last.iter_mut().collect::<Vec<_>>(), |this| this.step(by, ty)),
+        };
+        let mut calls = Calls::default();
+        if is_each_turn {
+            calls.step = self.block.split_off(after_limit);
+            calls.limit = self.block.split_off(mark);
+        }
         let (mut first, last, step) = (first?, last?, step?);
         let last = match place.ty {
             Type::Enum(_) => self.convert(Conversion::Same, Type::Elementary(ty), last),
@@ -186,7 +196,7 @@ impl<'s> Checker<'_, 's> {
         }
         let (body, taking) = (Block::new(), Taking::Each);
         let head = For { counter: place, first, last, step, range, is_private: false, body, taking, step_at };
-        Some((head, shown))
+        Some((head, shown, calls))
     }
 
     fn counter_type(&mut self, ty: Type, span: Span) -> Option<Elementary> {
@@ -211,8 +221,8 @@ impl<'s> Checker<'_, 's> {
     /// A FOR whose counter has no value beyond its limit: it ends here, and not where it wraps.
     fn note_endless(&mut self, to: &ast::Expr<'s>, ty: Elementary) {
         let dialect = self.decl.dialect(to.span);
-        self.note_use(Use::Part(LIMIT), to.span);
-        if !is_followed(dialect, LIMIT) {
+        self.note_use(Use::Part(Part::LimitOfType), to.span);
+        if !is_followed(dialect, Part::LimitOfType) {
             let system = dialect.name().to_ascii_uppercase();
             let message =
                 format!("on {system} this loop does not end: {} has no value beyond its limit", article(ty.name()));

@@ -6,6 +6,7 @@ mod address;
 mod any_input;
 mod binding;
 mod collect;
+mod columns;
 mod constant_address;
 mod external;
 mod generic;
@@ -72,6 +73,7 @@ pub(crate) fn declare<'s>(
         declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
     }
     declarations.note_starts();
+    declarations.check_columns();
     declarations.note_results(bodies);
     declarations.note_kept_in_outs(bodies);
     declarations.note_any_inputs(bodies);

@@ -3,7 +3,7 @@
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
 use crate::dialect::Dialect;
-use crate::dialect::rules::{TEMP, Use};
+use crate::dialect::rules::{Part, Use};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::signature::{EdgeInput, Formal, Signature, Target, pin_place};
@@ -237,7 +237,7 @@ impl<'s> Declarations<'s> {
         let retain = block.retain.or(block.persistent);
         if block.kind == VarKind::Temp && !pou.kind.is_function() {
             let at = self.location(block.span);
-            self.program.uses.note(Use::Part(TEMP), at);
+            self.program.uses.note(Use::Part(Part::Temp), at);
         }
         let lives_one_call = block.kind == VarKind::Temp
             || (pou.kind.is_function() && !matches!(block.kind, VarKind::Stat | VarKind::Inst));

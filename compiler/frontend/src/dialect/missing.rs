@@ -121,6 +121,16 @@ const OF_LOGIX: [&str; 15] = [
     "SFC_STOP",
 ];
 
+/// Functions of S7: why they are not there, and what to write for them.
+const OF_S7: [(&str, &str, &str); 2] = [
+    (
+        "PRESET_TIMER",
+        "it writes the PT of a timer, which takes its PT from each call here",
+        "give the timer's next call the new time: `t(IN := x, PT := new_time)`",
+    ),
+    ("T_COMBINE", "it is `CONCAT_DATE_TOD` in SCL", "write `CONCAT_DATE_TOD(IN1 := day, IN2 := time)`"),
+];
+
 /// Operators, whose operands may be what is no value elsewhere.
 const OPERATORS: [&str; 4] = ["ADRINST", "BITADR", "INDEXOF", "__VARINFO"];
 
@@ -182,4 +192,10 @@ pub(crate) fn namespace(full: &str) -> Option<&'static str> {
 pub(crate) fn function_of_type(space: &str, name: &str) -> Option<&'static str> {
     let is_it = space.eq_ignore_ascii_case("__SYSTEM") && name.eq_ignore_ascii_case("VAR_INFO");
     is_it.then_some("__VARINFO")
+}
+
+/// Why S7's function of this name is not there, and what to write for it.
+pub(crate) fn function_of_s7(dialect: Dialect, name: &str) -> Option<(&'static str, &'static str)> {
+    let found = OF_S7.iter().find(|it| it.0.eq_ignore_ascii_case(name)).filter(|_| dialect == Dialect::Siemens);
+    found.map(|(_, why, instead)| (*why, *instead))
 }

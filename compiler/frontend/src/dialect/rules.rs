@@ -15,8 +15,8 @@ pub use choice::{
     RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
 };
 pub use followed::{Followed, Rules};
-pub use not_followed::{EDGES, EN, Edge, LIMIT, NOT_FOLLOWED, NotFollowed, PRESET, SUBRANGE, TEMP, is_followed};
-pub use staunch_ir::Use;
+pub use not_followed::{EDGES, Edge, NOT_FOLLOWED, NotFollowed, is_followed};
+pub use staunch_ir::{Part, Use};
 use systems::{CODESYS, CSCAPE, IEC, LOGIX, OPENPLC, OPENPLC4, SIEMENS};
 
 impl Dialect {

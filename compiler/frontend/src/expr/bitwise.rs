@@ -4,10 +4,11 @@
 use super::checker::Checker;
 use super::operand::{Operand, computed, pattern};
 use super::operator::{Meeting, Sides};
+use crate::dialect::rules::Functions;
 use crate::types::coercion::is_narrow;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
-use staunch_ir::{Conversion, Elementary, Expr, Op, Type};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Type};
 
 impl<'s> Checker<'_, 's> {
     pub(super) fn bitwise(&mut self, sides: Sides) -> Option<Operand> {
@@ -56,6 +57,36 @@ impl<'s> Checker<'_, 's> {
                 self.not(value, span).map(Operand::Typed)
             }
         }
+    }
+
+    /// Whether STruC++ writes C++'s `!` for NOT of this, which makes 1 of 0 and 0 of anything else: it does where it does not
+    /// know the type, right before SEL, MUX and LIMIT; and NOT of that, in parentheses, is of a BOOL.
+    pub(super) fn negates_as_bool(&self, inner: &ast::Expr<'s>) -> bool {
+        let is_chosen = |callee: &ast::Expr<'s>| match &callee.kind {
+            ast::ExprKind::Name(name) => ["SEL", "MUX", "LIMIT"].iter().any(|it| it.eq_ignore_ascii_case(name.text)),
+            _ => false,
+        };
+        self.decl.dialect(inner.span).rules().functions.choice == Functions::OfStrucpp
+            && match &inner.kind {
+                ast::ExprKind::Call(callee, _) => is_chosen(callee),
+                ast::ExprKind::Paren(it) => match &it.kind {
+                    ast::ExprKind::Unary(ast::UnaryOp::Not, inner) => self.negates_as_bool(inner),
+                    _ => false,
+                },
+                _ => false,
+            }
+    }
+
+    /// 1 where the bits are none, and 0 else.
+    pub(super) fn is_zero(&mut self, operand: Operand, expected: Option<Type>, span: Span) -> Option<Operand> {
+        let value = self.materialise(operand.cut(), expected, span)?;
+        let ty = value.ty;
+        if ty == Type::BOOL || !matches!(ty, Type::Elementary(it) if it.is_bits()) {
+            return self.not(value, span).map(Operand::Typed);
+        }
+        let zero = Expr::new(ty, ExprKind::Const(self.decl.program.repr(ty)?.zero()), value.at);
+        let is_zero = self.apply(Op::Eq, ty, vec![value, zero], Type::BOOL, span)?;
+        Some(Operand::Typed(self.convert(Conversion::Value, ty, is_zero)))
     }
 
     /// An immediate value is a DINT (1756-RM006K, p. 545), or a LINT where a DINT does not hold it.

@@ -8,7 +8,7 @@ use super::order::Held;
 use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
 use crate::dialect::Dialect;
-use crate::dialect::rules::{PRESET, Use};
+use crate::dialect::rules::{Part, Use};
 use crate::types::signature::{Formal, Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
@@ -186,7 +186,7 @@ impl<'s> Checker<'_, 's> {
         let is_timer = info.pin("ET").is_some();
         let preset = info.inputs().position(|it| it.name == "PT").filter(|_| is_timer).and_then(|it| inputs[it]);
         if preset.is_some_and(|it| parts.written[it].value().is_some_and(|it| it.as_const().is_none())) {
-            self.note_use(Use::Part(PRESET), span);
+            self.note_use(Use::Part(Part::MovingPreset), span);
         }
         // What is left out holds what it was given last.
         let kept = |place: &Place, pin: usize| {

@@ -214,8 +214,9 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let found = match self.callee(callee, arguments) {
-            Some(Callee::Function(slot)) if self.has_untyped_scale(slot, callee, arguments) => None,
-            Some(Callee::Function(slot)) => self.meant(slot, callee.span, arguments, expected).map(Callee::Function),
+            Some(Callee::Function(slot)) => {
+                self.meant_function(slot, callee, arguments, expected).map(Callee::Function)
+            }
             Some(Callee::Routine(slot)) => self.meant_routine(slot, callee, arguments, expected).map(Callee::Routine),
             other => other,
         };
@@ -234,12 +235,41 @@ impl<'s> Checker<'_, 's> {
         matches!(&callee.kind, Ast::Name(name) if missing::is_operator(self.decl.dialect(name.span), name.text))
     }
 
-    /// SIMATIC's SCALE_X has the type of its MIN and MAX. Reports whole numbers that have none: whether the result is
-    /// rounded to a whole number would go by chance.
-    fn has_untyped_scale(&mut self, slot: usize, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>]) -> bool {
+    /// The FUNCTION that a call means. SIMATIC's SCALE_X has the type of its MIN and MAX, and that is its place's where these
+    /// are numbers without a type; where the place has none, whether the result is rounded would go by chance.
+    fn meant_function(
+        &mut self,
+        slot: usize,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        expected: Option<Type>,
+    ) -> Option<usize> {
+        let Some((first, second)) = self.untyped_scale(slot, arguments) else {
+            return self.meant(slot, callee.span, arguments, expected);
+        };
+        let place = expected.and_then(Type::elementary);
+        let all = self.decl.overloads.of(slot).unwrap_or_default();
+        let mut gives = |slot: usize| self.decl.signature(slot)?.result.as_ref()?.1.ty.read().elementary();
+        let of_place: Vec<_> = all.iter().copied().filter(|it| place.is_some() && gives(*it) == place).collect();
+        if !of_place.is_empty() {
+            return self.meant_of(&of_place, callee.span, arguments, expected);
+        }
+        let text = |it: Span| self.decl.log.sources.text(it).to_owned();
+        let (low, high) = (text(first), text(second));
+        self.report(
+            Diagnostic::new(Code::E0203, first.to(second), "`SCALE_X` has the type of its MIN and MAX")
+                .label("these numbers do not say which")
+                .help(format!("write `{low}.0` and `{high}.0` for a REAL, `INT#{low}` and `INT#{high}` for an INT"))
+                .other(callee.span, "it is called here"),
+        );
+        None
+    }
+
+    /// Where MIN and MAX of SCALE_X are, if both are whole numbers without a type.
+    fn untyped_scale(&self, slot: usize, arguments: &[ast::Argument<'s>]) -> Option<(Span, Span)> {
         let name = self.decl.pous[slot].ast.name;
         if name.text != "SCALE_X" || !self.decl.log.sources.get(name.span.file).is_unit("library/scale_x.st") {
-            return false;
+            return None;
         }
         let number = |(at, it): (usize, &ast::Argument<'s>)| match &it.kind {
             ArgumentKind::Positional(value) if at != 1 => whole_number(value),
@@ -247,16 +277,8 @@ impl<'s> Checker<'_, 's> {
             ArgumentKind::Positional(_) | ArgumentKind::Input(..) | ArgumentKind::Output { .. } => None,
         };
         let numbers: Vec<_> = arguments.iter().enumerate().filter_map(number).collect();
-        let [first, second] = numbers.as_slice() else { return false };
-        let text = |it: &Span| self.decl.log.sources.text(*it).to_owned();
-        let (low, high) = (text(first), text(second));
-        self.report(
-            Diagnostic::new(Code::E0203, first.to(*second), "`SCALE_X` has the type of its MIN and MAX")
-                .label("these numbers do not say which")
-                .help(format!("write `{low}.0` and `{high}.0` for a REAL, `INT#{low}` and `INT#{high}` for an INT"))
-                .other(callee.span, "it is called here"),
-        );
-        true
+        let [first, second] = numbers.as_slice() else { return None };
+        Some((*first, *second))
     }
 
     /// Reports what is wrong inside the arguments of a call that is wrong itself.

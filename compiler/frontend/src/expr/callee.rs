@@ -287,6 +287,11 @@ impl<'s> Checker<'_, 's> {
             self.report_s5_counter(name, counter);
             return;
         }
+        if let Some((why, instead)) = missing::function_of_s7(self.decl.dialect(name.span), name.text) {
+            let message = format!("the function `{}` of S7 is not supported", name.text);
+            self.report(Diagnostic::new(Code::E0904, name.span, message).label(why).help(instead));
+            return;
+        }
         if not_yet(name.text, self.decl.dialect(name.span)) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
             return;

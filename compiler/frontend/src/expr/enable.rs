@@ -7,7 +7,7 @@ use super::checker::Checker;
 use super::late_target::{Finding, LateTarget};
 use super::order::Held;
 use super::place::Found;
-use crate::dialect::rules::{EN, Use};
+use crate::dialect::rules::{Part, Use};
 use crate::types::signature::{Formal, Signature, Target};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ArgumentKind;
@@ -44,7 +44,7 @@ impl<'s> Checker<'_, 's> {
         if !arguments.iter().any(is_en) {
             return None;
         }
-        self.note_use(Use::Part(EN), callee.span);
+        self.note_use(Use::Part(Part::Enable), callee.span);
         let owns = self.own_parameters(what, callee);
         let mut enable = Enable { en: None, eno: None, own_eno: None, others: Vec::new() };
         let tells = !owns.0 && owns.1 && !self.decl.dialect(callee.span).declares_plain_enable();

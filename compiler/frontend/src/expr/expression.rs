@@ -215,6 +215,7 @@ impl<'s> Checker<'_, 's> {
             (UnaryOp::Plus, operand) => Some(operand),
             (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),
             (UnaryOp::Neg, number) => Some(number.negated()),
+            (UnaryOp::Not, operand) if self.negates_as_bool(inner) => self.is_zero(operand, expected, inner.span),
             (UnaryOp::Not, operand) => self.complement(operand, expected, inner.span),
         }
     }

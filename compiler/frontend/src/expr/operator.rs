@@ -4,7 +4,7 @@ use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
 use crate::dialect::Dialect;
-use crate::dialect::rules::{Literals, TimeAsNumber};
+use crate::dialect::rules::{Functions, Literals, TimeAsNumber};
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
@@ -34,7 +34,7 @@ impl<'s> Checker<'_, 's> {
             let power = Box::new(ast::Expr { kind: power, span });
             return self.operand(&ast::Expr { kind: ast::ExprKind::Unary(sign, power), span }, expected);
         }
-        let hint = expected.filter(|_| !compares(op));
+        let hint = expected.filter(|_| !compares(op)).or_else(|| self.bits_beside(left, right, op));
         if matches!(op, BinaryOp::And | BinaryOp::Or)
             && self.context == Context::Body
             && self.decl.dialect(op_span).rules().skips_second_side()
@@ -47,7 +47,7 @@ impl<'s> Checker<'_, 's> {
             self.operand(right, hint);
             return None;
         };
-        let right_hint = beside(&a, hint);
+        let right_hint = beside(&a, hint).or_else(|| self.bits_of_side(a.ty(), right, op));
         let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, right_hint))?;
         // A bare enumerator on the left listens to the right side.
         if let (Some(Type::Enum(x)), Some(Type::Enum(y))) = (a.ty(), b.ty())
@@ -58,6 +58,23 @@ impl<'s> Checker<'_, 's> {
         }
         let sides = Sides { a, b, left: left.span, right: right.span, op, op_span, span, hint };
         self.combine(sides)
+    }
+
+    /// The bit string that a call on the left listens to: that of the variable on the right.
+    fn bits_beside(&mut self, left: &ast::Expr<'s>, right: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
+        if !matches!(right.bare().kind, ast::ExprKind::Name(_) | ast::ExprKind::Member(..)) {
+            return None;
+        }
+        self.bits_of_side(Some(Type::Elementary(Elementary::Byte)), left, op)?;
+        let found = self.tried(right.span, |this| this.operand(right, None))??.ty();
+        self.bits_of_side(found, left, op)
+    }
+
+    /// MATIEC compares a bit string with a call of SEL, MUX and the like at its type, also where that is given numbers alone.
+    fn bits_of_side(&self, ty: Option<Type>, call: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
+        let is_matiec = self.decl.dialect(call.span).rules().functions.choice == Functions::OfMatiec;
+        let listens = is_matiec && compares(op) && matches!(call.bare().kind, ast::ExprKind::Call(..));
+        ty.filter(|it| listens && matches!(it, Type::Elementary(it) if it.is_bits() && *it != Elementary::Bool))
     }
 
     /// The operation on two sides that have been checked.

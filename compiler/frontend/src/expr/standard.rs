@@ -67,6 +67,10 @@ impl<'s> Checker<'_, 's> {
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 self.own_byte_order(resolved, name)
             }
+            Meaning::S7(function) => {
+                let resolved = self.resolve(signature, &values, expected, name)?;
+                self.s7_function(function, resolved, expected, name)
+            }
             Meaning::Assert => {
                 let condition = self.resolve(signature, &values, None, name)?.operands.pop()?;
                 Some(Operand::Typed(self.assured(condition, span)))

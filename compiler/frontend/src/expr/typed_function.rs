@@ -39,7 +39,12 @@ impl<'s> Checker<'_, 's> {
                 self.mux(Resolved { ty, own: ty, operands: typed(operands)? }, before, name.span)
             }
             Meaning::Move | Meaning::LittleEndian => operands.into_iter().next(),
-            Meaning::Text(_) | Meaning::Round(_) | Meaning::Assert | Meaning::Clock(_) | Meaning::Date(_) => None,
+            Meaning::Text(_)
+            | Meaning::Round(_)
+            | Meaning::Assert
+            | Meaning::Clock(_)
+            | Meaning::Date(_)
+            | Meaning::S7(_) => None,
         }
     }
 }

@@ -31,6 +31,27 @@ pub(crate) enum Meaning {
     Clock(Elementary),
     /// A date or a time of day from its parts, or a part of one.
     Date(DateFunction),
+    /// One of SIMATIC S7.
+    S7(S7Function),
+}
+
+/// What a function of SIMATIC S7 does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum S7Function {
+    /// The bytes of a bit string in the other order.
+    Swap,
+    /// The bit of this number alone.
+    Decode,
+    /// The number of the lowest bit that is set.
+    Encode,
+    /// What is after the point.
+    Fraction,
+    /// MUX with a value for each K that numbers no input.
+    MuxElse,
+    /// The number of so many decimal digits and a sign.
+    OfDigits(i64),
+    /// So many decimal digits and a sign.
+    ToDigits(i64),
 }
 
 /// Which whole number a real becomes.
@@ -142,6 +163,25 @@ const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
         signature!("CONCAT" (string1: ANY_STRING, string2: ANY_STRING) -> ANY_STRING extensible),
         Meaning::Text(TextOp::Concat),
     ),
+    (SIEMENS, signature!("SWAP" (IN: T) -> T [ANY_BIT]), Meaning::S7(S7Function::Swap)),
+    // S7-1200 manual V4.2, 09/2016, p. 328: IN modulo the bits of OUT.
+    (SIEMENS, signature!("DECO" (IN: ANY_INT) -> ANY_BIT), Meaning::S7(S7Function::Decode)),
+    (SIEMENS, signature!("ENCO" (IN: T) -> INT [ANY_BIT]), Meaning::S7(S7Function::Encode)),
+    (SIEMENS, signature!("FRAC" (IN: T) -> T [ANY_REAL]), Meaning::S7(S7Function::Fraction)),
+    (
+        SIEMENS,
+        signature!("MUX" (K: ANY_INT, INELSE: T, IN0: T, IN1: T) -> T [ANY] extensible),
+        Meaning::S7(S7Function::MuxElse),
+    ),
+    // BCD16 is from -999 to 999, BCD32 from -9999999 to 9999999 (S7-400 Instruction List, A5E00267845-01, p. 82).
+    (SIEMENS, signature!("BCD16_TO_INT" (IN: WORD) -> INT), Meaning::S7(S7Function::OfDigits(3))),
+    (SIEMENS, signature!("INT_TO_BCD16" (IN: INT) -> WORD), Meaning::S7(S7Function::ToDigits(3))),
+    (SIEMENS, signature!("BCD32_TO_DINT" (IN: DWORD) -> DINT), Meaning::S7(S7Function::OfDigits(7))),
+    (SIEMENS, signature!("DINT_TO_BCD32" (IN: DINT) -> DWORD), Meaning::S7(S7Function::ToDigits(7))),
+    // S7-1200 manual, 11/2011, p. 234; V4.2, p. 337.
+    (SIEMENS, signature!("T_ADD" (IN1: ANY_ELEMENTARY, IN2: ANY_DURATION) -> ANY), Meaning::Operator(BinaryOp::Add)),
+    (SIEMENS, signature!("T_SUB" (IN1: ANY_ELEMENTARY, IN2: ANY_DURATION) -> ANY), Meaning::Operator(BinaryOp::Sub)),
+    (SIEMENS, signature!("T_DIFF" (IN1: ANY_DATE, IN2: ANY_DATE) -> ANY), Meaning::Operator(BinaryOp::Sub)),
     // CODESYS's library names the parameters of the functions on strings in its own way.
     (CODESYS, signature!("LEN" (STR: ANY_STRING) -> INT), Meaning::Text(TextOp::Len)),
     (CODESYS, signature!("LEFT" (STR: ANY_STRING, SIZE: ANY_INT) -> ANY_STRING), Meaning::Text(TextOp::Left)),

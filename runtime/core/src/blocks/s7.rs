@@ -3,8 +3,8 @@
 //! operations"). They count as [`iec`]'s do, in all integers. Whether a load is a level or an edge is said in two ways.
 
 use super::iec::{self, Count};
-use crate::Context;
 use crate::block::pins;
+use crate::{Context, Time};
 
 /// `CTU`: counts up on each rising edge of `cu`, also past `pv`.
 pub type Ctu<T> = iec::Ctu<T>;
@@ -119,4 +119,64 @@ pins!([T: Count, const EDGE: bool] Both<T, EDGE> {
     }
     Output { qu: BOOL = "QU" as Done, qd: BOOL = "QD" as Empty, cv: T = "CV" as Count }
     Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before", ld_before: BOOL = "ld_before" }
+});
+
+/// `TONR` of S7-1200 and S7-1500: adds up how long `in_` was TRUE, in `et`, until that is the preset: then `q` is TRUE, and both
+/// stay, also when `in_` falls, until `r`, a level that clears them whatever `in_` is. The preset is the `pt` of the call in
+/// which `in_` rose last; a negative one acts as 0. The call in which `in_` falls adds the time up to it. (S7-1200 System
+/// Manual, 11/2011, tables 7-18 and 7-19; TIA Portal's help, "TONR: Time accumulator")
+///
+/// ```
+/// use staunch_runtime::{Context, s7::Tonr};
+/// let mut worn = Tonr::default();
+/// worn.call(true, false, 50, &Context::at(0));
+/// worn.call(false, false, 50, &Context::at(30));
+/// worn.call(true, false, 50, &Context::at(1000));
+/// worn.call(true, false, 50, &Context::at(1020));
+/// assert_eq!((worn.q, worn.et), (true, 50));
+/// ```
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tonr {
+    pub in_: bool,
+    pub r: bool,
+    pub pt: Time,
+    pub q: bool,
+    pub et: Time,
+    /// Memory: `in_` in the last call.
+    pub in_before: bool,
+    /// Memory: `pt` when `in_` rose last.
+    pub preset: Time,
+    /// Memory: the time of the last call.
+    pub last: Time,
+}
+
+impl Tonr {
+    /// One call: sets the inputs and measures.
+    #[inline]
+    pub fn call(&mut self, in_: bool, r: bool, pt: Time, cx: &Context) {
+        (self.in_, self.r, self.pt) = (in_, r, pt);
+        self.step(cx);
+    }
+
+    /// One call with the inputs as they are.
+    #[inline]
+    pub fn step(&mut self, cx: &Context) {
+        let runs = self.in_before & !self.q;
+        let passed = cx.now().wrapping_sub(self.last);
+        let rises = self.in_ & !self.in_before;
+        (self.in_before, self.last) = (self.in_, cx.now());
+        self.preset = if rises { self.pt.max(0) } else { self.preset };
+        let added = self.et.saturating_add(passed).min(self.preset.max(self.et));
+        let et = if runs { added } else { self.et };
+        let over = (runs | rises) & (et >= self.preset);
+        self.et = if self.r { 0 } else { et };
+        self.q = !self.r & (self.q | over);
+    }
+}
+
+pins!([] Tonr {
+    Input { in_: BOOL = "IN", r: BOOL = "R", pt: TIME = "PT" }
+    Output { q: BOOL = "Q", et: TIME = "ET" }
+    Memory { in_before: BOOL = "in_before", preset: TIME = "preset", last: TIME = "last" }
 });

@@ -2,7 +2,7 @@
 
 use super::convert::ConvertTo;
 use super::{Bits, Integer};
-use crate::{Scalar, Value};
+use crate::{FaultKind, Scalar, Value};
 
 /// `a AND b`, bit by bit.
 #[inline]
@@ -167,4 +167,65 @@ pub fn to_bcd(number: i64) -> i64 {
         rest /= 10;
     }
     digits as i64
+}
+
+/// The number of `count` decimal digits, each in four bits, that is below 0 where the highest of the four bits above
+/// them is set: BCD16 of S7 has 3 digits, BCD32 has 7.
+///
+/// # Errors
+/// [`FaultKind::NotDecimal`] if four bits are above 9.
+///
+/// ```
+/// use staunch_runtime::ops::from_signed_bcd;
+/// assert_eq!(from_signed_bcd(0xF123, 3), Ok(-123));
+/// ```
+#[inline]
+pub fn from_signed_bcd(digits: i64, count: i64) -> Result<i64, FaultKind> {
+    let count = most_digits(count);
+    let digit = |at: u32| (digits >> (4 * at)) & 0xF;
+    let mut number = 0;
+    for at in (0..count).rev() {
+        if digit(at) > 9 {
+            return Err(FaultKind::NotDecimal);
+        }
+        number = number * 10 + digit(at);
+    }
+    Ok(if digit(count) < 8 { number } else { -number })
+}
+
+/// The `count` decimal digits of a number, each in four bits, below four bits that are set where it is below 0.
+///
+/// # Errors
+/// [`FaultKind::NotDecimal`] if it has more digits.
+///
+/// ```
+/// use staunch_runtime::ops::to_signed_bcd;
+/// assert_eq!(to_signed_bcd(-123, 3), Ok(0xF123));
+/// ```
+#[inline]
+pub fn to_signed_bcd(number: i64, count: i64) -> Result<i64, FaultKind> {
+    let count = most_digits(count);
+    let magnitude = number.unsigned_abs();
+    if magnitude >= 10_u64.pow(count) {
+        return Err(FaultKind::NotDecimal);
+    }
+    let sign = if number < 0 { 0xF << (4 * count) } else { 0 };
+    Ok(to_bcd(magnitude as i64) | sign)
+}
+
+/// As many digits as 64 bits hold beside a sign, at most.
+#[inline]
+fn most_digits(count: i64) -> u32 {
+    count.clamp(0, 15) as u32
+}
+
+/// The number of the lowest bit that is set; 0 where none is.
+///
+/// ```
+/// use staunch_runtime::ops::first_bit;
+/// assert_eq!((first_bit(0b1010_0000_u8), first_bit(0_u8)), (5, 0));
+/// ```
+#[inline]
+pub fn first_bit<T: Integer>(value: T) -> i16 {
+    if value == T::ZERO { 0 } else { value.extended().trailing_zeros() as i16 }
 }

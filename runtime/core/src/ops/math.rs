@@ -99,3 +99,14 @@ pub fn whole<T: Real>(value: T) -> T {
 pub fn nearest<T: Real>(value: T) -> T {
     value.rounded_to_even()
 }
+
+/// What is after the point of the value, with its sign; NaN for infinities and NaN.
+///
+/// ```
+/// use staunch_runtime::ops::fraction;
+/// assert_eq!(fraction(-2.75_f64), -0.75);
+/// ```
+#[inline]
+pub fn fraction<T: Real>(value: T) -> T {
+    value.minus(value.rounded_to_zero())
+}

@@ -22,7 +22,7 @@ use crate::compare::program::scalar::{Role, Scalar};
 use comparison::Comparison;
 use passing::Passed;
 use settled::Settled;
-use staunch_frontend::rules::{SUBRANGE, is_followed};
+use staunch_frontend::rules::{Part, is_followed};
 use staunch_host::{Bookmark, Event, Machine, Snapshot};
 use staunch_ir::{Chars, FieldId, StructId, Value};
 use staunch_runtime::FaultKind;
@@ -317,7 +317,7 @@ impl Pair {
         let kinds = kinds(faults);
         // What is a fault here is none on a system that stores what lies outside of a subrange.
         let goes_on = [0, 1].map(|side| {
-            kinds[side] == Some(FaultKind::SubrangeViolated) && !is_followed(self.sides[side].dialect, SUBRANGE)
+            kinds[side] == Some(FaultKind::SubrangeViolated) && !is_followed(self.sides[side].dialect, Part::Subrange)
         });
         kinds[0] != kinds[1] || goes_on[0] != goes_on[1]
     }

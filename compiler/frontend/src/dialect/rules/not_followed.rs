@@ -2,7 +2,7 @@
 
 use super::systems::{MATIEC, SIEMENS_DATES};
 use crate::dialect::Dialect;
-use staunch_ir::Use;
+use staunch_ir::{Part, Use};
 use staunch_runtime::{Class, Elementary};
 
 /// A rule of a system that its dialect does not follow: a program that has what uses it may compute otherwise there.
@@ -17,7 +17,7 @@ pub struct NotFollowed {
 }
 
 /// Whether a dialect does as its system with this part of the language.
-pub fn is_followed(dialect: Dialect, part: &'static str) -> bool {
+pub fn is_followed(dialect: Dialect, part: Part) -> bool {
     NOT_FOLLOWED.iter().all(|it| it.dialect != dialect || it.uses != Use::Part(part))
 }
 
@@ -96,26 +96,26 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         "a DATE is a number of days, and the difference of two is that number in nanoseconds",
     ),
     of_strucpp(
-        Use::Part(EN),
+        Use::Part(Part::Enable),
         "a statement with a call whose EN is FALSE is left out, so that its variable keeps its value; within an expression EN is \
          passed over, and a block's own input of that name is never set",
     ),
-    of_strucpp(Use::Part(TEMP), "it keeps its value from call to call"),
-    of_matiec(Use::Part(SUBRANGE), UNCHECKED),
-    of_strucpp(Use::Part(SUBRANGE), UNCHECKED),
-    of_strucpp(Use::Part(LIMIT), ENDLESS),
-    of_matiec(Use::Part(LIMIT), ENDLESS),
+    of_strucpp(Use::Part(Part::Temp), "it keeps its value from call to call"),
+    of_matiec(Use::Part(Part::Subrange), UNCHECKED),
+    of_strucpp(Use::Part(Part::Subrange), UNCHECKED),
+    of_strucpp(Use::Part(Part::LimitOfType), ENDLESS),
+    of_matiec(Use::Part(Part::LimitOfType), ENDLESS),
     NotFollowed {
         dialect: Dialect::Codesys,
         what: ENDLESS,
         evidence: "CODESYS help, \"FOR\", \"C0266\"",
-        uses: Use::Part(LIMIT),
+        uses: Use::Part(Part::LimitOfType),
     },
     NotFollowed {
         dialect: Dialect::Siemens,
         what: "a timer keeps the PT that it started with",
         evidence: "S7-1200 manual, 11/2011, table 7-19",
-        uses: Use::Part(PRESET),
+        uses: Use::Part(Part::MovingPreset),
     },
     NotFollowed {
         dialect: Dialect::Codesys,
@@ -125,18 +125,6 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     },
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
-
-/// A call with an input EN, in the notes of a program.
-pub const EN: &str = "EN";
-/// A VAR_TEMP of a block or a PROGRAM.
-pub const TEMP: &str = "VAR_TEMP";
-/// A FOR that leaves its counter no value beyond its limit.
-pub const LIMIT: &str = "FOR to the limit of its counter's type";
-/// A timer whose PT is not constant.
-pub const PRESET: &str = "a PT that moves";
-
-/// An assignment to a variable of a subrange that faults: no note of a program, since most have none.
-pub const SUBRANGE: &str = "a value outside of a subrange";
 
 const UNCHECKED: &str = "it is stored, and the program continues; here it is a fault";
 
@@ -242,6 +230,24 @@ pub const EDGES: &[Edge] = &[
         "a conversion to an integer type that does not hold the number",
         "of a real the nearest value, of an integer the low bits",
         "no page read says the value; ENO is FALSE",
+    ),
+    edge(
+        Dialect::Siemens,
+        "`/` and `MOD` by zero; `LIMIT` with MN above MX",
+        "0; IN",
+        "the S7-1200 manual's tables of ENO say it, but the pages could not be read again for this table",
+    ),
+    edge(
+        Dialect::Siemens,
+        "`BCD16_TO_INT` of four bits above 9, `INT_TO_BCD16` of more than three digits",
+        "a fault",
+        "S7-400 Instruction List, p. 82: only the range",
+    ),
+    edge(
+        Dialect::Siemens,
+        "`TONR` in the call in which IN falls; IN still TRUE after R, or after `RESET_TIMER`",
+        "the time up to that call counts; it times anew",
+        "S7-1200 manual, 11/2011, table 7-19: nothing of it",
     ),
     edge(Dialect::Cscape, "all of them", "as `iec`", "no page of Horner was found"),
 ];
