@@ -54,7 +54,7 @@ const CIRCLES: [(&str, &[&[&str]]); 6] = [
             &["syntax::doc", "syntax::parser"],
         ],
     ),
-    ("compiler/ir/src", &[&["interpret", "interpret::place"], &["reference", "reference::fixed", "reference::table"]]),
+    ("compiler/ir/src", &[&["interpret", "interpret::place"]]),
     ("compiler/rust/src", &[]),
     ("compiler/native/src", &[]),
     ("compiler/cli/src", &[]),

@@ -16,6 +16,7 @@
 //! array, or what a reference leads to, might be the same storage. That an index is within its bounds is also known more
 //! often: a local counter is private to its loop.
 
+mod local;
 mod read_once;
 mod set_first;
 
@@ -28,14 +29,13 @@ use crate::{
     Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
     StatementKind, Taking, Type, Value,
 };
+use local::{MOST_LOCALS, name};
 use read_once::read_once;
 use set_first::is_set_first;
 use staunch_runtime::Repr;
 
 /// A loop that touches more places than this stays: each is compared with each.
 const MOST_PLACES: usize = 128;
-/// Of one routine.
-const MOST_LOCALS: usize = 256;
 
 /// What a back end gains by.
 #[expect(missing_debug_implementations, reason = "it holds a function, and lives for one question")]
@@ -216,22 +216,6 @@ impl Promoter<'_> {
         checked.resize(self.routine.locals.len(), false);
         statement_faults(self.program, &RULES, self.routine, (self.around.iter().collect(), checked), &begun)
     }
-}
-
-/// As the variable, or as the last member on the way to it.
-fn name(program: &Program, routine: &Routine, place: &Place) -> String {
-    let mut ty = Frame::of(program, routine).root_type(place.root);
-    let mut name = match place.root {
-        Root::Param(id) => routine.params[id.index()].name.clone(),
-        Root::Instance | Root::Globals | Root::Local(_) => String::new(),
-    };
-    for projection in &place.projections {
-        if let (Some(Type::Struct(id)), Projection::Field(field)) = (ty, projection) {
-            name.clone_from(&program.structure(id).fields[field.index()].name);
-        }
-        ty = ty.and_then(|it| program.part(it, projection));
-    }
-    name
 }
 
 impl Touched {

@@ -294,12 +294,7 @@ impl Function<'_, '_> {
 
     /// Goes to the block that is returned, with the offset of an object that is exactly of the type and in no pool: what
     /// the runtime says of such an object, in line. All else goes on in the block that is current then.
-    fn whole(
-        &mut self,
-        reference: clif::Value,
-        distance: clif::Value,
-        (id, ty): (u32, Type),
-    ) -> Option<clif::Block> {
+    fn whole(&mut self, reference: clif::Value, distance: clif::Value, (id, ty): (u32, Type)) -> Option<clif::Block> {
         if self.module.layout.size(ty) == 0 {
             return None;
         }

@@ -48,7 +48,10 @@ impl Emitter<'_> {
 
     pub fn look_up(&self, it: &LookUp) -> TokenStream {
         let (name, ty) = (&it.name, self.stored(it.ty));
-        let doc = format!(" The {} that a reference leads to, if it is where one is expected.", self.program.type_name(it.ty));
+        let doc = format!(
+            " The {} that a reference leads to, if it is where one is expected.",
+            self.program.type_name(it.ty)
+        );
         let mut places = it.targets.iter().map(|it| self.place_of(it));
         let first = places.next();
         quote! {

@@ -22,6 +22,7 @@
     reason = "variables and control flow are as in the source"
 )]
 #![allow(
+    unused_parens,
     clippy::approx_constant,
     clippy::complexity,
     clippy::style,

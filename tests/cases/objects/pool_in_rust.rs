@@ -22,6 +22,7 @@
     reason = "variables and control flow are as in the source"
 )]
 #![allow(
+    unused_parens,
     clippy::approx_constant,
     clippy::complexity,
     clippy::style,
@@ -139,7 +140,8 @@ impl Main {
                 );
         }
         self.p.set(made);
-        self.made.set(self.p.get() & 0xFFFFFFFF != 0); // :10
+        let p: u64 = self.p.get(); // :10
+        self.made.set(p & 0xFFFFFFFF != 0);
         if self.made.get() {
             // :11
             REFERENCES
@@ -147,19 +149,17 @@ impl Main {
                     i16,
                 >(
                     machine,
-                    self.p.get(),
+                    p,
                     0,
                     reference::View::Number(2),
                     REFERENCES
-                        .load::<
-                            i16,
-                        >(machine, self.p.get(), 0, reference::View::Number(2))
+                        .load::<i16>(machine, p, 0, reference::View::Number(2))
                         .at(POOL_IN_RUST_ST, 11, 22)?
                         .wrapping_add(1),
                 )
                 .at(POOL_IN_RUST_ST, 11, 14)?;
         }
-        let deleted: u64 = self.p.get() & 0xFFFFFFFFFFFFF; // :12
+        let deleted: u64 = p & 0xFFFFFFFFFFFFF; // :12
         if deleted != 0 {
             let mut found: bool = false;
             let mut place_2: i64 = 1;

@@ -10,12 +10,13 @@
 //! may write it. A back end then sees that it is the same reference, and looks but once where it leads: it cannot know that
 //! what is written through a reference is another variable.
 
-use super::MOST_LOCALS;
+use super::local::{MOST_LOCALS, name};
 use crate::alias::{Frame, changes};
 use crate::loops::exit_condition;
 use crate::visit::{self, Access, Rewrite};
 use crate::{
-    Block, Const, Expr, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type, Value,
+    Block, Const, Expr, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type,
+    Value,
 };
 
 /// So many statements later it is read again.
@@ -88,7 +89,7 @@ impl Reader<'_> {
     }
 
     fn local(&mut self, place: &Place) -> LocalId {
-        let name = super::name(self.program, self.routine, place);
+        let name = name(self.program, self.routine, place);
         self.routine.locals.push(Local { name, ty: place.ty, initial: Const::Scalar(Value::U64(0)), doc: None });
         LocalId::next(self.routine.locals.len() - 1)
     }

@@ -2,7 +2,7 @@
 //! routine calls itself, so that no two calls use it at a time. They start at their initial values in every
 //! call, as before.
 
-use super::addressed_locals;
+use super::addresses::addressed_locals;
 use crate::loops::exit_condition;
 use crate::{
     Argument, Block, Chars, Const, Expr, ExprKind, Field, FieldId, For, Local, LocalId, Location, Mode, Place, Program,

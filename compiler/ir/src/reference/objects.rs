@@ -1,6 +1,6 @@
 //! The objects that references name: each variable whose address is taken somewhere, in each instance.
 
-use super::addressable;
+use super::addresses::addressable;
 use crate::layout::Layout;
 use crate::{FieldId, Program, StructId, Type};
 use staunch_runtime::Repr;

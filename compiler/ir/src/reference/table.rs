@@ -75,7 +75,8 @@ impl<'p> Builder<'p> {
 
     /// The node of the whole state.
     fn state(&mut self) -> usize {
-        let members: Vec<_> = roots(self.program, self.layout).into_iter().map(|(_, offset, id)| (offset, Type::Struct(id))).collect();
+        let members: Vec<_> =
+            roots(self.program, self.layout).into_iter().map(|(_, offset, id)| (offset, Type::Struct(id))).collect();
         self.structure(self.layout.machine.size, u32::MAX, &members)
     }
 

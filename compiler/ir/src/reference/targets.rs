@@ -5,8 +5,8 @@
 use super::objects::{Object, objects, roots};
 use super::table::wanted;
 use crate::layout::Layout;
-use crate::{Place, Program, Projection, Root, Routine, StructId, Type};
 use crate::{Expr, FieldId};
+use crate::{Place, Program, Projection, Root, Routine, StructId, Type};
 use staunch_runtime::reference::Wanted;
 use std::collections::HashMap;
 
@@ -30,7 +30,10 @@ pub enum Step {
     /// The element at a position, from 0.
     Element(u64),
     /// Each of an array's elements, of so many bytes.
-    Each { stride: u64, len: u64 },
+    Each {
+        stride: u64,
+        len: u64,
+    },
 }
 
 /// The objects of a program.

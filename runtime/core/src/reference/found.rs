@@ -114,7 +114,12 @@ impl<'m, T, M: Shared> Found<'m, T, M> {
 
     /// Writes a number or BOOL to where `of` leads in the variable, `further` bytes into it.
     #[inline]
-    pub fn set<V: Scalar>(self, further: u64, of: impl FnOnce(&'m T) -> &'m Cell<V>, value: V) -> Result<(), FaultKind> {
+    pub fn set<V: Scalar>(
+        self,
+        further: u64,
+        of: impl FnOnce(&'m T) -> &'m Cell<V>,
+        value: V,
+    ) -> Result<(), FaultKind> {
         self.set_as(view::<V>(), further, |it, value| of(it).set(value), value)
     }
 
