@@ -6,7 +6,7 @@ use staunch_frontend::{Code, Diagnostic, Options, Severity, Source, Sources, che
 /// The errors of two instances with arguments, after so many spaces on their line.
 fn reported(spaces: usize, declarations: &str) -> Vec<Diagnostic> {
     let block = "FUNCTION_BLOCK F\nVAR_OUTPUT n : INT; END_VAR\nMETHOD FB_init : BOOL\nVAR_INPUT bInitRetains, \
-                 bInCopyCode : BOOL; of : INT; END_VAR\nn := of;\nEND_METHOD\nEND_FUNCTION_BLOCK\n";
+                 bInCopyCode : BOOL; first : INT; END_VAR\nn := first;\nEND_METHOD\nEND_FUNCTION_BLOCK\n";
     let program = format!("PROGRAM Main VAR{}{declarations} END_VAR\nf1(); f2();\nEND_PROGRAM\n", " ".repeat(spaces));
     let mut sources = Sources::default();
     sources.add(Source::new("long.st", format!("{{dialect 'codesys'}}\n{block}{program}")));

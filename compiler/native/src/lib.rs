@@ -15,6 +15,7 @@ mod operands;
 mod signature;
 
 mod at_once;
+mod expectation;
 mod expected;
 mod follow;
 mod function;

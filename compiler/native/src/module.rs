@@ -1,6 +1,6 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
-use crate::expected::{Expectation, expectations};
+use crate::expectation::{Expectation, expectations};
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;

@@ -14,6 +14,7 @@ mod text;
 
 mod declare;
 mod emitter;
+mod expected;
 mod loop_state;
 
 mod attempt;

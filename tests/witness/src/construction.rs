@@ -32,7 +32,7 @@ impl<'a> Machine<'a> {
             return Ok(());
         }
         self.assign_references(frame, place, slot)?;
-        if let Some(initial) = slot.initial.filter(|_| self.is_constructed(&place.ty)) {
+        if let Some(initial) = slot.initial.filter(|_| self.has_fb_init(&place.ty)) {
             self.unassign(place, initial)?;
         }
         let lists = slot.construction.map_or(&[][..], |it| &it.lists);
@@ -47,7 +47,7 @@ impl<'a> Machine<'a> {
             return Ok(());
         }
         self.construct_inside(frame, place, lists)?;
-        if slot.initial.is_some() && self.is_constructed(&place.ty) {
+        if slot.initial.is_some() && self.has_fb_init(&place.ty) {
             let before = std::mem::replace(&mut self.assigns, Assigns::NAMED);
             let assigned = self.start(frame, place, slot.initial);
             self.assigns = before;
@@ -216,6 +216,19 @@ impl<'a> Machine<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Whether an instance of this type, or one inside of it, has an FB_init, which may see and write its variables.
+    fn has_fb_init(&self, ty: &Type<'a>) -> bool {
+        match ty {
+            Type::Array(it) => self.has_fb_init(&it.element.ty),
+            Type::Record(it) => {
+                let mut line = it.pou.into_iter().flat_map(|class| self.declared.line_down(class));
+                line.any(|it| self.declared.own_routine(it, "FB_init").is_some())
+                    || it.fields.iter().any(|it| self.has_fb_init(&it.1.ty))
+            }
+            _ => false,
+        }
     }
 
     /// Whether an instance of this type, or one inside of it, starts by METHODs of its own.
