@@ -3,8 +3,8 @@
 use super::*;
 use crate::fixture::{AT, assign, field, int, lint, load, local, param, program, routine, structure};
 use crate::{
-    Argument, Array, ArrayId, Const, Field, FieldId, LocalId, Mode, ParamId, RefKind, RefType, ReferenceId, Routine,
-    RoutineKind,
+    Argument, Array, ArrayId, Const, ExprKind, Field, FieldId, LocalId, Mode, ParamId, RefKind, RefType, ReferenceId,
+    Routine, RoutineKind,
 };
 
 const PART: Type = Type::Struct(StructId(0));
@@ -228,17 +228,31 @@ fn an_index_is_read() {
 fn what_a_reference_leads_to_is_any_variable_but_one_that_lives_for_a_call() {
     let mut program = small();
     program.references = vec![RefType { kind: RefKind::PointerTo, target: Type::INT }];
-    let frame = Frame::of(&program, &program.routines[0]);
+    program.reach.references = true;
     let pointer = Type::Reference(ReferenceId(0));
     let through = |root| Place::root(root, pointer).deref(Type::INT, AT);
     let k = Place::root(Root::Globals, GLOBALS).field(FieldId(0), Type::INT);
     let own = Place::root(Root::Instance, STATE).field(FieldId(1), Type::INT);
     let temp = Place::local(LocalId(1), Type::INT);
-    for pointer in [through(Root::Local(LocalId(0))), through(Root::Param(ParamId(0)))] {
-        for (place, meets) in [(&k, Alias::May), (&own, Alias::May), (&pointer, Alias::May), (&temp, Alias::No)] {
-            assert_eq!((alias(&frame, &pointer, place), alias(&frame, place, &pointer)), (meets, meets));
+    let meet = |program: &Program, [of_k, of_own]: [Alias; 2]| {
+        let frame = Frame::of(program, &program.routines[0]);
+        for pointer in [through(Root::Local(LocalId(0))), through(Root::Param(ParamId(0)))] {
+            for (place, meets) in [(&k, of_k), (&own, of_own), (&pointer, Alias::May), (&temp, Alias::No)] {
+                assert_eq!((alias(&frame, &pointer, place), alias(&frame, place, &pointer)), (meets, meets));
+            }
         }
-    }
+    };
+    meet(&program, [Alias::May; 2]);
+    // Once it is known whose addresses are taken, it is one of those.
+    let taken = |of: &Place| {
+        Statement::assign(temp.clone(), Expr::new(pointer, ExprKind::AddressOf(Box::new(of.clone())), AT), AT)
+    };
+    program.routines[0].body = vec![taken(&own)];
+    program.reached = Some(crate::reference::reach(&program));
+    meet(&program, [Alias::No, Alias::May]);
+    program.routines[0].body = vec![taken(&k)];
+    program.reached = Some(crate::reference::reach(&program));
+    meet(&program, [Alias::May, Alias::No]);
 }
 
 #[test]
