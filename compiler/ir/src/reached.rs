@@ -23,7 +23,37 @@ impl Reached {
         for (owner, field) in variables {
             reached.add(program, is_state, owner, field);
         }
+        reached.add_around(program, is_state);
         reached
+    }
+
+    /// A reference to the first variable of an instance may be followed as one to the instance, or to what that is the
+    /// first part of, where the program has references of the type.
+    fn add_around(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool) {
+        let mut before = None;
+        while before != Some(self.variables.len()) {
+            before = Some(self.variables.len());
+            for target in program.references.iter().map(|it| it.target) {
+                if self.is_owner_in(program, target) {
+                    self.add_inside(program, is_state, target);
+                    self.add_variables_with(program, is_state, target);
+                }
+            }
+        }
+    }
+
+    /// The variables of which something of the type is a part.
+    fn add_variables_with(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool, ty: Type) {
+        if matches!(ty, Type::Struct(id) if is_state(id)) {
+            return;
+        }
+        for owner in (0..program.structs.len()).map(StructId::next).filter(|it| is_state(*it)) {
+            for (at, field) in program.structure(owner).fields.iter().enumerate() {
+                if program.holds(field.ty, |it| it == ty) {
+                    self.add(program, is_state, owner, FieldId::next(at));
+                }
+            }
+        }
     }
 
     fn add(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool, owner: StructId, field: FieldId) {
