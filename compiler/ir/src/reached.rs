@@ -28,29 +28,23 @@ impl Reached {
     }
 
     /// A reference to the first variable of an instance may be followed as one to the instance, or to what that is the
-    /// first part of, where the program has references of the type.
+    /// first part of, where the program has references to what holds such instances.
     fn add_around(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool) {
         let mut before = None;
         while before != Some(self.variables.len()) {
             before = Some(self.variables.len());
-            for target in program.references.iter().map(|it| it.target) {
-                if self.is_owner_in(program, target) {
-                    self.add_inside(program, is_state, target);
-                    self.add_variables_with(program, is_state, target);
-                }
+            let targets = || program.references.iter().map(|it| it.target);
+            let is_around = |it: &StructId| targets().any(|ty| program.holds(ty, |part| part == Type::Struct(*it)));
+            let around: BTreeSet<StructId> = self.owners.iter().copied().filter(is_around).collect();
+            let holds = |ty| program.holds(ty, |it| matches!(it, Type::Struct(id) if around.contains(&id)));
+            for target in targets().filter(|it| holds(*it)) {
+                self.add_inside(program, is_state, target);
             }
-        }
-    }
-
-    /// The variables of which something of the type is a part.
-    fn add_variables_with(&mut self, program: &Program, is_state: &dyn Fn(StructId) -> bool, ty: Type) {
-        if matches!(ty, Type::Struct(id) if is_state(id)) {
-            return;
-        }
-        for owner in (0..program.structs.len()).map(StructId::next).filter(|it| is_state(*it)) {
-            for (at, field) in program.structure(owner).fields.iter().enumerate() {
-                if program.holds(field.ty, |it| it == ty) {
-                    self.add(program, is_state, owner, FieldId::next(at));
+            for owner in (0..program.structs.len()).map(StructId::next).filter(|it| is_state(*it)) {
+                for (at, field) in program.structure(owner).fields.iter().enumerate() {
+                    if holds(field.ty) {
+                        self.add(program, is_state, owner, FieldId::next(at));
+                    }
                 }
             }
         }

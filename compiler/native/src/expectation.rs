@@ -23,6 +23,7 @@ pub(crate) enum Which {
 
 /// Code compares with so many; where more are expected, it asks the table at once.
 const MOST: usize = 4;
+
 /// Where variables of a type are expected; nothing where they may be in many places.
 pub(crate) fn expectations(targets: &Targets<'_>, ty: Type) -> Vec<Expectation> {
     let number = match ty {
