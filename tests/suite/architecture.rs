@@ -8,7 +8,7 @@ use std::process::Command;
 
 /// What each crate may name in its `[dependencies]`. A name that ends in `*` is a family.
 const EDGES: &[(&str, &[&str])] = &[
-    ("staunch-runtime", &["libm"]),
+    ("staunch-runtime", &["libm", "ryu"]),
     ("staunch-runtime-abi", &["staunch-runtime"]),
     ("staunch-host", &["staunch-runtime"]),
     ("staunch-ir", &["staunch-runtime"]),

@@ -14,10 +14,11 @@ pub struct Recipe {
     pub flags: &'static [&'static str],
 }
 
-pub const RUNTIME: [Recipe; 4] = [
+pub const RUNTIME: [Recipe; 5] = [
     // `optimizations_enabled` is what libm's own build script sets from the second level on.
     Recipe { package: "libm", edition: "2021", uses: &[], flags: &["--cfg", "optimizations_enabled"] },
-    Recipe { package: "staunch-runtime", edition: "2024", uses: &["libm"], flags: &[] },
+    Recipe { package: "ryu", edition: "2021", uses: &[], flags: &["--cfg", "feature=\"small\""] },
+    Recipe { package: "staunch-runtime", edition: "2024", uses: &["libm", "ryu"], flags: &[] },
     Recipe { package: "staunch-runtime-abi", edition: "2024", uses: &["staunch-runtime"], flags: &[] },
     Recipe { package: "staunch-host", edition: "2024", uses: &["staunch-runtime"], flags: &[] },
 ];

@@ -42,6 +42,7 @@ pub mod faults;
 pub mod interpret;
 pub mod layout;
 pub mod loops;
+pub mod pieces;
 pub mod promote;
 pub mod reached;
 pub mod reference;

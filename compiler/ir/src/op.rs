@@ -93,6 +93,37 @@ impl Op {
     }
 }
 
+impl TextOp {
+    /// The most characters of a value's text.
+    pub const fn longest(self) -> Option<u16> {
+        match self {
+            Self::FromChar | Self::FromWchar => Some(1),
+            Self::FromBool => Some(5),
+            // -1.23457e-308
+            Self::FromShort => Some(13),
+            // -1.234567891e-308
+            Self::FromGeneral => Some(17),
+            // 16#ffffffffffffffff
+            Self::FromBits => Some(19),
+            // -1234567900000000.0
+            Self::FromReal => Some(19),
+            // -9223372036854775808
+            Self::FromLint | Self::FromUlint => Some(20),
+            // -2.2250738585072014e-308
+            Self::FromLreal => Some(24),
+            // LTIME#-106751d23h47m16s854ms775us808ns
+            Self::FromTime | Self::FromSeconds => Some(40),
+            _ => None,
+        }
+    }
+
+    /// Whether it writes its result from the first character to the last, whatever room there is: a target of fewer
+    /// characters gets the start of it.
+    pub const fn writes_in_order(self) -> bool {
+        !matches!(self, Self::WithChar | Self::WithWchar) && self.signature().result.repr().is_none()
+    }
+}
+
 /// One operand or result of a text operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextValue {

@@ -2,8 +2,8 @@
 //! values that its statements make on the way, and what the code generator keeps beside them. It is
 //! never less than that; a test compares it with the frames that are made.
 
-use crate::visit;
 use crate::{Argument, Expr, ExprKind, Place, Program, Projection, Routine, Statement, StatementKind, Type};
+use crate::{pieces, visit};
 
 /// A register's size, to which all parts of a frame are rounded.
 const WORD: u64 = 8;
@@ -138,18 +138,19 @@ impl Taken<'_> {
                     self.make(expr.ty);
                 }
             }
-            ExprKind::ApplyText(op, operands) => {
-                operands.iter().for_each(|it| self.expr(it));
-                if op.result().is_none() {
-                    self.make(expr.ty);
-                }
-            }
-            ExprKind::Convert(_, operand) => {
-                self.expr(operand);
-                if matches!(expr.ty, Type::String(_)) {
-                    self.make(expr.ty);
-                }
-            }
+            ExprKind::ApplyText(..) | ExprKind::Convert(..) if matches!(expr.ty, Type::String(_)) => self.text(expr),
+            ExprKind::ApplyText(_, operands) => operands.iter().for_each(|it| self.expr(it)),
+            ExprKind::Convert(_, operand) => self.expr(operand),
         }
+    }
+
+    /// A string of its pieces.
+    fn text(&mut self, expr: &Expr) {
+        for operand in pieces::pieces(expr).iter().flat_map(|it| it.operands()) {
+            self.expr(operand);
+        }
+        let most = u16::try_from(pieces::most(expr)).unwrap_or(u16::MAX);
+        let made = expr.ty.string_type().map(|it| it.of_capacity(most.min(it.capacity)));
+        made.into_iter().for_each(|it| self.make(Type::String(it)));
     }
 }

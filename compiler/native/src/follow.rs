@@ -227,6 +227,7 @@ impl Function<'_, '_> {
     pub(crate) fn load_reached_text(&mut self, it: Reached, ty: StringType) -> Address {
         let shape = self.module.layout.shape(it.ty);
         let (space, out) = self.space(shape.size);
+        self.set_length(space, 0);
         let [words, state] = self.world();
         let limit = self.integer(types::I16, i128::from(ty.capacity));
         let [reference, distance] = [it.way.reference, it.way.distance].map(|value| (AbiParam::new(types::I64), value));
@@ -240,7 +241,7 @@ impl Function<'_, '_> {
     pub(crate) fn store_reached_text(&mut self, it: Reached, value: &Expr) {
         let shape = self.module.layout.shape(value.ty);
         let (space, from) = self.space(shape.size);
-        self.assign_text(value, space);
+        self.write_copy(value, space);
         let [words, state] = self.world();
         let [reference, distance] = [it.way.reference, it.way.distance].map(|value| (AbiParam::new(types::I64), value));
         let arguments = [words, state, reference, distance, by_pointer(from)];

@@ -211,7 +211,10 @@ impl<'a, 'p> Function<'a, 'p> {
                     Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                         self.store(value, target)
                     }
-                    Type::String(it) => self.copy_text(value, target, it),
+                    Type::String(it) => {
+                        self.store_const(ty, &Const::Zero, target);
+                        self.copy_text(value, target, it);
+                    }
                     Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                         self.copy(Address::at(value), target, ty);
                     }

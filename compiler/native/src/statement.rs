@@ -65,17 +65,17 @@ impl<'p> Function<'_, 'p> {
                 let value = self.scalar(value);
                 self.builder.def_var(variable, value);
             }
-            PlaceValue::Memory(address) => self.assign_to(value, address),
+            PlaceValue::Memory(address) => self.assign_to(value, target, address),
         }
     }
 
-    fn assign_to(&mut self, value: &Expr, target: Address) {
+    fn assign_to(&mut self, value: &Expr, place: &Place, target: Address) {
         match value.ty {
             Type::Elementary(_) | Type::Reference(_) | Type::Subrange(..) | Type::Enum(_) => {
                 let value = self.scalar(value);
                 self.store(value, target);
             }
-            Type::String(_) => self.assign_text(value, target),
+            Type::String(_) => self.assign_text(value, place, target),
             Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
                 self.assign_aggregate(value, target);
             }

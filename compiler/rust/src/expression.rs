@@ -23,7 +23,7 @@ impl Function<'_> {
             ExprKind::AddressOf(place) => self.reference_to(place),
             ExprKind::Apply(op, operands) => self.apply(expr, *op, operands),
             ExprKind::ApplyText(op, operands) => self.apply_text(expr, *op, operands, false),
-            ExprKind::Convert(how, value) => self.convert(*how, expr.ty, value),
+            ExprKind::Convert(how, value) => self.convert(*how, expr, value),
         }
     }
 
@@ -57,6 +57,9 @@ impl Function<'_> {
     }
 
     fn apply(&self, expr: &Expr, op: Op, operands: &[Expr]) -> Code {
+        if let Some(equal) = self.equal_texts(op, operands) {
+            return equal;
+        }
         let repr = self.operation_repr(expr, op, operands);
         let float = repr.is_float();
         if repr == Repr::Bool && matches!(op, Op::And | Op::Or) {
@@ -202,9 +205,11 @@ impl Function<'_> {
         }
     }
 
-    fn convert(&self, how: Conversion, ty: Type, value: &Expr) -> Code {
+    fn convert(&self, how: Conversion, expr: &Expr, value: &Expr) -> Code {
+        let ty = expr.ty;
         match (ty, value.ty) {
             (Type::String(to), Type::String(from)) if to == from => self.expr(value),
+            (Type::String(_), Type::String(_)) if !matches!(value.kind, ExprKind::Load(_)) => self.built(expr, false),
             (Type::String(_), Type::String(_)) => {
                 let (head, value) = (text::head(ty), self.text_reference(value));
                 Code::postfix(quote!(#head::from_text(#value)))
@@ -216,7 +221,7 @@ impl Function<'_> {
                 }
                 let base = Type::Elementary(self.emitter.program.enumeration(id).base);
                 let name = self.emitter.names.enumeration(id);
-                let number = self.convert(how, base, value).tokens;
+                let number = self.convert_repr(how, self.repr(base), value).tokens;
                 Code::postfix(quote!(#name(#number)))
             }
             _ => self.convert_repr(how, self.repr(ty), value),

@@ -106,6 +106,9 @@ impl Function<'_> {
         if self.emitter.shared && !self.is_simple_target(target) {
             return self.assign_shared(statement, target, value);
         }
+        if let Some(written) = self.assign_text(statement, target, value) {
+            return written;
+        }
         let printed = self.expr(value).tokens;
         // Rust evaluates the value before the target's subscripts; the first fault wins here.
         if self.place_faults(target) && faults::expr_faults(self.emitter.program, value) {

@@ -9,7 +9,8 @@
 //! - `staunch_convert_{from}_{to}`, `staunch_trunc_{from}_{to}`: conversions.
 //! - `staunch_text_{function}`, `staunch_text_copy`: strings. A string is a pointer to its header,
 //!   a `u16` length, with the bytes right after it; a string result goes to a header and a
-//!   capacity after the operands.
+//!   capacity after the operands, and is appended to what the string holds.
+//! - `staunch_text_append`, and `staunch_text_clear`, which ends writing a string anew.
 //! - `staunch_reference_{address, load, store, load_text, store_text, find}`: accesses through references. They
 //!   take the words of the table, and the state; those that may fault return 0 or the fault's code.
 //! - the symbols in `BLOCKS`: instructions of the standard blocks take the instance, the context

@@ -1,7 +1,8 @@
 //! A shim for each string function.
 //!
-//! A result is cut at the capacity it is given; the units past its length become zero. A function that exists for both
-//! kinds of strings has two shims.
+//! A result is written after what its string holds already, and cut at the capacity that is given. Whoever wants a string of
+//! it alone sets the length to 0 before, and clears what the string had more of after. A function that exists for both kinds
+//! of strings has two shims.
 
 use core::slice;
 
@@ -21,19 +22,38 @@ pub(crate) unsafe fn units<'a, U: Unit>(header: *const u8) -> &'a [U] {
     unsafe { slice::from_raw_parts(header.add(UNITS).cast::<U>(), usize::from(header.cast::<u16>().read())) }
 }
 
+/// The length and the units of the string at `header`.
+///
+/// # Safety
+/// `header` points to a string of `capacity` units, aligned for its length, that nobody else
+/// reads or writes during `'a`.
+unsafe fn parts<'a, U: Unit>(header: *mut u8, capacity: u16) -> (&'a mut u16, &'a mut [U]) {
+    // SAFETY: the length and the units do not overlap; the rest is the caller's promise.
+    unsafe {
+        let units = slice::from_raw_parts_mut(header.add(UNITS).cast::<U>(), usize::from(capacity));
+        (&mut *header.cast::<u16>(), units)
+    }
+}
+
 /// The string at `header` as a destination, emptied.
 ///
 /// # Safety
 /// `header` points to a string of `capacity` units, aligned for its length, that nobody else
 /// reads or writes during `'a`.
 pub(crate) unsafe fn destination<'a, U: Unit>(header: *mut u8, capacity: u16) -> text::Destination<'a, U> {
-    // SAFETY: the length and the units do not overlap; the rest is the caller's promise.
-    unsafe {
-        text::Destination::new(
-            &mut *header.cast::<u16>(),
-            slice::from_raw_parts_mut(header.add(UNITS).cast::<U>(), usize::from(capacity)),
-        )
-    }
+    // SAFETY: the caller's promise.
+    let (len, units) = unsafe { parts(header, capacity) };
+    text::Destination::new(len, units)
+}
+
+/// The string at `header`, to be written after its end.
+///
+/// # Safety
+/// As [`destination`].
+unsafe fn end<'a, U: Unit>(header: *mut u8, capacity: u16) -> text::Destination<'a, U> {
+    // SAFETY: the caller's promise.
+    let (len, units) = unsafe { parts(header, capacity) };
+    text::Destination::at_end(len, units)
 }
 
 /// Assigns a STRING, cut at the capacity of the target; both may be the same variable.
@@ -66,6 +86,54 @@ unsafe fn copy<U: Unit>(from: *const u8, out: *mut u8, capacity: u16) {
     }
 }
 
+/// Appends a STRING, cut at the capacity of the target.
+///
+/// # Safety
+/// Both point to strings, aligned for their lengths; `out` has `capacity` bytes, and the strings do not overlap.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_text_append(from: *const u8, out: *mut u8, capacity: u16) {
+    // SAFETY: the caller's promise.
+    unsafe { end::<u8>(out, capacity).write(units(from)) }
+}
+
+/// The same for a WSTRING.
+///
+/// # Safety
+/// As [`staunch_text_append`], of `capacity` units.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_wide_text_append(from: *const u8, out: *mut u8, capacity: u16) {
+    // SAFETY: the caller's promise.
+    unsafe { end::<u16>(out, capacity).write(units(from)) }
+}
+
+/// Sets to zero what a STRING that was `before` bytes long has more of than it is long now.
+///
+/// # Safety
+/// `out` points to a string, aligned for its length, whose capacity is at least `before`.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_text_clear(out: *mut u8, before: u16) {
+    // SAFETY: the caller's promise.
+    unsafe { clear::<u8>(out, before) }
+}
+
+/// The same for a WSTRING.
+///
+/// # Safety
+/// As [`staunch_text_clear`].
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_wide_text_clear(out: *mut u8, before: u16) {
+    // SAFETY: the caller's promise.
+    unsafe { clear::<u16>(out, before) }
+}
+
+/// # Safety
+/// As [`staunch_text_clear`].
+unsafe fn clear<U: Unit>(out: *mut u8, before: u16) {
+    // SAFETY: the caller's promise.
+    let (len, units) = unsafe { parts::<U>(out, before) };
+    units.get_mut(usize::from(*len)..).unwrap_or_default().fill(U::ZERO);
+}
+
 macro_rules! shims {
     ($($op:ident $source:literal $function:ident ($($arg:ident: $ty:ident),*) -> $result:ident [$units:ident] $($extensible:ident)?;)*) => {
         #[allow(non_snake_case, reason = "operands have the standard's names")]
@@ -73,6 +141,10 @@ macro_rules! shims {
         pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
             each("staunch_text_copy", staunch_text_copy as *const u8);
             each("staunch_wide_text_copy", staunch_wide_text_copy as *const u8);
+            each("staunch_text_append", staunch_text_append as *const u8);
+            each("staunch_wide_text_append", staunch_wide_text_append as *const u8);
+            each("staunch_text_clear", staunch_text_clear as *const u8);
+            each("staunch_wide_text_clear", staunch_wide_text_clear as *const u8);
             $(shims!(@ $units $result each $function ($($arg: $ty),*));)*
         }
     };
@@ -107,7 +179,7 @@ macro_rules! shim_of_string {
         #[unsafe(export_name = concat!($prefix, stringify!($function)))]
         unsafe extern "C" fn shim($($arg: operand_type!($ty),)* out: *mut u8, capacity: u16) {
             // SAFETY: the caller's promise.
-            unsafe { text::$function($(operand!($ty $unit $arg),)* &mut destination::<$out>(out, capacity)) }
+            unsafe { text::$function($(operand!($ty $unit $arg),)* &mut end::<$out>(out, capacity)) }
         }
         $each(concat!($prefix, stringify!($function)), shim as *const u8);
     }};

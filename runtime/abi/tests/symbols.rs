@@ -29,6 +29,8 @@ unsafe extern "C" {
     fn staunch_text_concat(a: *const u8, b: *const u8, out: *mut u8, capacity: u16);
     fn staunch_text_mid(text: *const u8, count: i64, position: i64, out: *mut u8, capacity: u16);
     fn staunch_text_copy(from: *const u8, out: *mut u8, capacity: u16);
+    fn staunch_text_append(from: *const u8, out: *mut u8, capacity: u16);
+    fn staunch_text_clear(out: *mut u8, before: u16);
 }
 
 #[test]
@@ -56,15 +58,20 @@ fn a_fault_leaves_the_result_alone() {
 #[test]
 fn strings_pass_by_header() {
     let (a, b) = (Text::<8>::new(b"ABC"), Text::<3>::new(b"DE"));
-    let mut out = Text::<4>::new(b"old");
-    let (from_a, from_b, to) = ((&raw const a).cast(), (&raw const b).cast(), (&raw mut out).cast());
+    let mut out = Text::<4>::new(b"=");
+    let (from_a, from_b) = ((&raw const a).cast(), (&raw const b).cast());
+    let to: *mut u8 = (&raw mut out).cast();
     // SAFETY: the pointers are those of live strings, with the capacity of `out`.
     unsafe {
         assert_eq!(staunch_text_find(from_a, from_b), 0);
         staunch_text_concat(from_a, from_b, to, 4);
-        assert_eq!(out, Text::new(b"ABCD"));
+        assert_eq!(out, Text::new(b"=ABC"));
+        to.cast::<u16>().write(0);
         staunch_text_mid(from_a, 9, 2, to, 4);
+        staunch_text_clear(to, 4);
         assert_eq!(out, Text::new(b"BC"));
+        staunch_text_append(from_b, to, 4);
+        assert_eq!(out, Text::new(b"BCDE"));
         staunch_text_copy(from_a, to, 4);
         assert_eq!(out, Text::new(b"ABC"));
         staunch_text_copy(to, to, 4);
@@ -95,7 +102,7 @@ fn every_symbol_is_listed() {
     // Pairs of reprs.
     let conversions = 11 * 11 + 2 * 8;
     // The functions of texts, and a copy for each unit.
-    let strings = for_each_text_op!(count_text_operations) + 2;
+    let strings = for_each_text_op!(count_text_operations) + 6;
     let references = 8;
     let instructions = BLOCKS.iter().flat_map(|block| block.instructions);
     let blocks: usize = instructions.map(|it| 1 + usize::from(it.prescan.is_some())).sum();

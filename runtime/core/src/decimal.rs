@@ -1,81 +1,12 @@
 //! Reals to decimal digits and back, exactly: as few digits as read back the same, and the nearest real to
-//! any digits. `core` does the same with code that can panic.
+//! any digits.
 
-/// An unsigned integer of as many bits as the fraction of any LREAL needs.
-#[derive(Clone)]
-struct Big([u32; Self::WORDS]);
+mod big;
 
-impl Big {
-    const WORDS: usize = 48;
-
-    fn new(value: u128) -> Self {
-        let mut words = [0; Self::WORDS];
-        for (at, word) in words.iter_mut().take(4).enumerate() {
-            *word = (value >> (32 * at)) as u32;
-        }
-        Self(words)
-    }
-
-    /// Times `factor`; what leaves the top is lost, and nothing that is computed here reaches it.
-    fn times(&mut self, factor: u32) {
-        let mut carry = 0_u64;
-        for word in &mut self.0 {
-            let product = u64::from(*word) * u64::from(factor) + carry;
-            (*word, carry) = (product as u32, product >> 32);
-        }
-    }
-
-    fn times_power_of_ten(&mut self, power: u32) {
-        (0..power).for_each(|_| self.times(10));
-    }
-
-    fn doubled(&mut self, times: u32) {
-        for _ in 0..times / 31 {
-            self.times(1 << 31);
-        }
-        self.times(1 << (times % 31));
-    }
-
-    fn plus(&self, other: &Self) -> Self {
-        let mut sum = self.clone();
-        let mut carry = 0_u64;
-        for (word, other) in sum.0.iter_mut().zip(&other.0) {
-            let both = u64::from(*word) + u64::from(*other) + carry;
-            (*word, carry) = (both as u32, both >> 32);
-        }
-        sum
-    }
-
-    /// Less `other`, which is no greater.
-    fn subtract(&mut self, other: &Self) {
-        let mut borrow = 0_i64;
-        for (word, other) in self.0.iter_mut().zip(&other.0) {
-            let rest = i64::from(*word) - i64::from(*other) + borrow;
-            (*word, borrow) = (rest as u32, rest >> 32);
-        }
-    }
-
-    fn order(&self, other: &Self) -> core::cmp::Ordering {
-        self.0.iter().rev().cmp(other.0.iter().rev())
-    }
-
-    fn is_below(&self, other: &Self) -> bool {
-        self.order(other).is_lt()
-    }
-
-    fn bits(&self) -> i32 {
-        let mut bits = 0;
-        for (at, word) in (0..).zip(&self.0) {
-            if *word != 0 {
-                bits = at * 32 + 32 - word.leading_zeros() as i32;
-            }
-        }
-        bits
-    }
-}
+pub(crate) use big::rounded;
 
 /// A format of reals: bits of the fraction, its leading one counted, and the least exponent.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Format {
     precision: i32,
     least: i32,
@@ -94,108 +25,64 @@ pub(crate) struct Digits {
 
 /// The fewest digits that are nearer to `value` than to any other of its format; `value` is finite and above 0.
 pub(crate) fn shortest(value: f64, format: Format) -> Digits {
-    let bits = value.to_bits();
-    let (raw, fraction) = ((bits >> 52) as i32 & 0x7FF, bits & ((1 << 52) - 1));
-    let (mut mantissa, mut power) = if raw == 0 { (fraction, -1074) } else { (fraction | 1 << 52, raw - 1075) };
-    // At the format's own width: a REAL has zeros where an LREAL has more bits.
-    while power < format.least || (mantissa >> format.precision) > 0 {
-        (mantissa, power) = (mantissa >> 1, power + 1);
-    }
-    // Dragon4: the rest over the scale is what is left to print, the margins are half the way to the neighbours.
-    let is_even = mantissa % 2 == 0;
-    let is_narrow = mantissa == 1 << (format.precision - 1) && power > format.least;
-    let (mut rest, mut scale, mut margin) = (Big::new(u128::from(mantissa)), Big::new(1), Big::new(1));
-    rest.doubled(power.max(0) as u32 + 1);
-    margin.doubled(power.max(0) as u32);
-    scale.doubled((-power).max(0) as u32 + 1);
-    let mut upper = margin.clone();
-    if is_narrow {
-        upper.doubled(1);
-        rest.doubled(1);
-        scale.doubled(1);
-    }
-    let reaches = |rest: &Big, upper: &Big, scale: &Big| match rest.plus(upper).order(scale) {
-        core::cmp::Ordering::Less => false,
-        core::cmp::Ordering::Equal => is_even,
-        core::cmp::Ordering::Greater => true,
+    let mut buffer = ryu::Buffer::new();
+    let spelled = match format {
+        REAL => buffer.format_finite(value as f32),
+        _ => buffer.format_finite(value),
     };
-    let mut exponent = 0;
-    while reaches(&rest, &upper, &scale) {
-        scale.times(10);
-        exponent += 1;
+    let mut digits = Digits::of(spelled.as_bytes());
+    if digits.are_half_below(value) {
+        digits.raise();
     }
-    let grow = |rest: &mut Big, upper: &mut Big, margin: &mut Big| {
-        rest.times(10);
-        upper.times(10);
-        margin.times(10);
-    };
-    loop {
-        let (mut more, mut more_upper, mut more_margin) = (rest.clone(), upper.clone(), margin.clone());
-        grow(&mut more, &mut more_upper, &mut more_margin);
-        if reaches(&more, &more_upper, &scale) {
-            break;
-        }
-        (rest, upper, margin) = (more, more_upper, more_margin);
-        exponent -= 1;
-    }
-    let mut out = Digits { digits: [0; 17], count: 0, exponent };
-    for place in &mut out.digits {
-        grow(&mut rest, &mut upper, &mut margin);
-        let mut digit = 0;
-        while digit < 9 && !rest.is_below(&scale) {
-            rest.subtract(&scale);
-            digit += 1;
-        }
-        out.count += 1;
-        let is_low = rest.is_below(&margin) || is_even && rest.order(&margin).is_eq();
-        let is_high = reaches(&rest, &upper, &scale);
-        let is_up = is_high && (!is_low || !rest.plus(&rest).is_below(&scale));
-        *place = digit + u8::from(is_up);
-        if is_low || is_high {
-            break;
-        }
-    }
-    out
+    digits
 }
 
-/// The first `count` digits, at most 17, the last one rounded, ties to even; `value` is an LREAL, finite and above 0.
-pub(crate) fn rounded(value: f64, count: usize) -> Digits {
+/// A finite number that is not below 0, as a whole number times a power of two.
+fn parts(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let (raw, fraction) = ((bits >> 52) as i32 & 0x7FF, bits & ((1 << 52) - 1));
-    let (mantissa, power) = if raw == 0 { (fraction, -1074) } else { (fraction | 1 << 52, raw - 1075) };
-    let (mut rest, mut scale) = (Big::new(u128::from(mantissa)), Big::new(1));
-    rest.doubled(power.max(0) as u32);
-    scale.doubled((-power).max(0) as u32);
-    let mut exponent = 0;
-    while !rest.is_below(&scale) {
-        scale.times(10);
-        exponent += 1;
-    }
-    loop {
-        let mut more = rest.clone();
-        more.times(10);
-        if !more.is_below(&scale) {
-            break;
-        }
-        (rest, exponent) = (more, exponent - 1);
-    }
-    let mut out = Digits { digits: [0; 17], count: count.min(17), exponent };
-    for place in out.digits.iter_mut().take(count) {
-        rest.times(10);
-        while *place < 9 && !rest.is_below(&scale) {
-            rest.subtract(&scale);
-            *place += 1;
-        }
-    }
-    let last = out.digits.iter().take(count).next_back().copied().unwrap_or_default();
-    let half = rest.plus(&rest).order(&scale);
-    if half.is_gt() || half.is_eq() && last % 2 == 1 {
-        out.raise();
-    }
-    out
+    if raw == 0 { (fraction, -1074) } else { (fraction | 1 << 52, raw - 1075) }
 }
 
 impl Digits {
+    /// Of a number as it is spelled: digits with a point among them, and perhaps an exponent.
+    fn of(spelled: &[u8]) -> Self {
+        let mut parts = spelled.split(|it| *it == b'e');
+        let (mantissa, exponent) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+        let mut out = Self { digits: [0; 17], count: 0, exponent: whole(exponent) };
+        let mut is_fraction = false;
+        for byte in mantissa {
+            match (*byte, out.digits.get_mut(out.count)) {
+                (b'.', _) => is_fraction = true,
+                (b'0', _) if out.count == 0 => out.exponent -= i32::from(is_fraction),
+                (digit, Some(place)) => {
+                    *place = digit.wrapping_sub(b'0');
+                    out.count += 1;
+                    out.exponent += i32::from(!is_fraction);
+                }
+                (_, None) => {}
+            }
+        }
+        out.count = out.digits.iter().rposition(|it| *it != 0).map_or(0, |it| it + 1);
+        out
+    }
+
+    /// Whether `value` is in the middle between the digits and the next ones. ryu takes the even ones of the two; `core`,
+    /// and so the digits of a trace, are the greater ones.
+    fn are_half_below(&self, value: f64) -> bool {
+        let (mantissa, power) = parts(value);
+        let (odd, power) = (mantissa >> mantissa.trailing_zeros(), power + mantissa.trailing_zeros() as i32);
+        // Twice the value is a whole number of the last place: mantissa * 2^(power + 1) * 10^places. From places of 0 down
+        // two reals are further apart than that.
+        let places = self.count as i32 - self.exponent;
+        if places < 0 || power + 1 + places != 0 {
+            return false;
+        }
+        let number = self.digits.iter().take(self.count).fold(0_u64, |number, digit| number * 10 + u64::from(*digit));
+        let twice = 5_u64.checked_pow(places as u32).and_then(|it| it.checked_mul(odd));
+        twice == Some(2 * number + 1)
+    }
+
     /// One more in the last place.
     fn raise(&mut self) {
         for place in self.digits.iter_mut().take(self.count).rev() {
@@ -210,64 +97,36 @@ impl Digits {
     }
 }
 
-/// The real nearest to `digits * 10^exponent`, ties to even; infinity where it is beyond the greatest.
-pub(crate) fn nearest(digits: u128, exponent: i32, format: Format) -> f64 {
-    if digits == 0 || exponent < -400 {
-        return 0.0;
-    }
-    if exponent > 320 {
-        return f64::INFINITY;
-    }
-    let (mut over, mut under) = (Big::new(digits), Big::new(1));
-    over.times_power_of_ten(exponent.max(0) as u32);
-    under.times_power_of_ten((-exponent).max(0) as u32);
-    // So that the quotient has the format's bits, or one more.
-    let power = (over.bits() - under.bits() - format.precision).max(format.least);
-    over.doubled((-power).max(0) as u32);
-    under.doubled(power.max(0) as u32);
-    let mut quotient = 0_u64;
-    for bit in (0..=format.precision as u32).rev() {
-        let mut part = under.clone();
-        part.doubled(bit);
-        if !over.is_below(&part) {
-            over.subtract(&part);
-            quotient |= 1 << bit;
-        }
-    }
-    let (mut quotient, mut power, mut is_rest) = (quotient, power, !over.is_below(&Big::new(1)));
-    let mut half = over.plus(&over).order(&under);
-    if quotient >> format.precision > 0 {
-        let lost = quotient & 1 == 1;
-        half = match (lost, is_rest) {
-            (false, _) => core::cmp::Ordering::Less,
-            (true, false) => core::cmp::Ordering::Equal,
-            (true, true) => core::cmp::Ordering::Greater,
-        };
-        (quotient, power, is_rest) = (quotient >> 1, power + 1, is_rest || lost);
-    }
-    if is_rest && (half.is_gt() || half.is_eq() && quotient & 1 == 1) {
-        quotient += 1;
-    }
-    if quotient >> format.precision > 0 {
-        (quotient, power) = (quotient >> 1, power + 1);
-    }
-    if power > format.greatest {
-        return f64::INFINITY;
-    }
-    assemble(quotient, power)
+/// A whole number of few digits.
+fn whole(spelled: &[u8]) -> i32 {
+    let digits = spelled.iter().filter(|it| it.is_ascii_digit());
+    let magnitude = digits.fold(0_i32, |number, digit| number * 10 + i32::from(*digit - b'0'));
+    if spelled.starts_with(b"-") { -magnitude } else { magnitude }
 }
 
-/// `mantissa * 2^power`, which an LREAL holds exactly.
-fn assemble(mantissa: u64, power: i32) -> f64 {
-    if mantissa == 0 {
-        return 0.0;
+/// The real nearest to `digits * 10^exponent`, ties to even; infinity where it is beyond the greatest.
+pub(crate) fn nearest(digits: u128, exponent: i32, format: Format) -> f64 {
+    at_once(digits, exponent, format).unwrap_or_else(|| big::nearest(digits, exponent, format))
+}
+
+/// The powers of ten that an LREAL holds exactly.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
+];
+
+/// Clinger's fast path: where the digits and the power are LREALs, one operation rounds only once.
+fn at_once(digits: u128, exponent: i32, format: Format) -> Option<f64> {
+    let number = u64::try_from(digits).ok().filter(|it| *it <= 1 << LREAL.precision)? as f64;
+    let power = POWERS.get(exponent.unsigned_abs() as usize)?;
+    let value = if exponent < 0 { number / power } else { number * power };
+    // To a REAL it is rounded again: right, but where rounding has led to the middle between two of them.
+    let is_middle = value.to_bits() & 0x1FFF_FFFF == 0x1000_0000;
+    match format {
+        REAL if is_middle => None,
+        REAL => Some(f64::from(value as f32)),
+        _ => Some(value),
     }
-    let (mut mantissa, mut power) = (mantissa, power);
-    while mantissa >> 52 == 0 && power > -1074 {
-        (mantissa, power) = (mantissa << 1, power - 1);
-    }
-    let exponent = if mantissa >> 52 == 0 { 0 } else { (power + 1075) as u64 };
-    f64::from_bits(exponent << 52 | mantissa & ((1 << 52) - 1))
 }
 
 #[cfg(test)]

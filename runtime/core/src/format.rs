@@ -79,18 +79,27 @@ fn time_of_day(out: &mut impl Write, time: Time) -> Result {
 }
 
 /// In decimal, with zeros before it where it has fewer digits than `least`.
-pub(crate) fn number(out: &mut impl Write, value: u64, least: u32) -> Result {
-    let (mut size, mut digits) = (1_u64, 1);
-    while digits < least || size <= value / 10 {
-        (size, digits) = (size.saturating_mul(10), digits + 1);
+fn number(out: &mut impl Write, value: u64, least: usize) -> Result {
+    let mut buffer = [0; MOST_DIGITS];
+    out.write_str(core::str::from_utf8(digits(value, least, &mut buffer)).unwrap_or_default())
+}
+
+/// The digits of the greatest number.
+pub(crate) const MOST_DIGITS: usize = 20;
+
+/// The decimal digits of a number, with zeros before them where there are fewer than `least`.
+pub(crate) fn digits(value: u64, least: usize, buffer: &mut [u8; MOST_DIGITS]) -> &[u8] {
+    let (mut rest, mut start) = (value, MOST_DIGITS);
+    for (at, place) in buffer.iter_mut().enumerate().rev() {
+        *place = b'0' + (rest % 10) as u8;
+        rest /= 10;
+        if rest > 0 || at + least > MOST_DIGITS {
+            continue;
+        }
+        start = at;
+        break;
     }
-    let mut rest = value;
-    while size > 0 {
-        // One digit, as `size` is the greatest power that the rest may reach.
-        out.write_char(char::from(b'0' + (rest / size % 10) as u8))?;
-        (rest, size) = (rest % size, size / 10);
-    }
-    Ok(())
+    buffer.get(start..).unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -98,6 +98,24 @@ impl<const N: usize, U: Unit> Text<N, U> {
     pub fn destination(&mut self) -> Destination<'_, U> {
         Destination::new(&mut self.len, &mut self.units)
     }
+
+    /// The string as it is, for writing after its end.
+    #[inline]
+    pub fn end(&mut self) -> Destination<'_, U> {
+        Destination::at_end(&mut self.len, &mut self.units)
+    }
+
+    /// Puts as much of `units` as still fits after the string's end.
+    ///
+    /// ```
+    /// let mut text = staunch_runtime::Text::<5>::new(b"abc");
+    /// text.append(b"def");
+    /// assert_eq!(text.as_bytes(), b"abcde");
+    /// ```
+    #[inline]
+    pub fn append(&mut self, units: &[U]) {
+        self.end().write(units);
+    }
 }
 
 impl<const N: usize> Text<N> {
@@ -127,20 +145,31 @@ impl<const N: usize, U: Unit> fmt::Display for Text<N, U> {
     }
 }
 
-/// Where a string function writes: the length and the units of a string of any capacity.
+/// Where a string function writes: the length and the units of a string of any capacity. Each writes after what is there,
+/// so that several make one string.
+///
+/// The units past a string's length are zero. So those that it had before and has no more become zero when the
+/// writing ends; the others are not touched.
 #[derive(Debug)]
-pub struct Destination<'a, U = u8> {
+pub struct Destination<'a, U: Unit = u8> {
     len: &'a mut u16,
     units: &'a mut [U],
+    /// How long the string was.
+    before: u16,
 }
 
 impl<'a, U: Unit> Destination<'a, U> {
-    /// An empty string in `units`, which are set to zero.
+    /// An empty string in the place of the one of this length.
     #[inline]
     pub fn new(len: &'a mut u16, units: &'a mut [U]) -> Self {
-        *len = 0;
-        units.fill(U::ZERO);
-        Self { len, units }
+        let before = core::mem::take(len);
+        Self { len, units, before }
+    }
+
+    /// A string that is there already.
+    #[inline]
+    pub fn at_end(len: &'a mut u16, units: &'a mut [U]) -> Self {
+        Self { len, units, before: 0 }
     }
 
     /// Appends as much of `units` as still fits.
@@ -148,10 +177,22 @@ impl<'a, U: Unit> Destination<'a, U> {
     pub fn write(&mut self, units: &[U]) {
         let free = self.units.get_mut(usize::from(*self.len)..).unwrap_or_default();
         let count = free.len().min(units.len()).min(usize::from(u16::MAX - *self.len));
-        for (to, from) in free.iter_mut().zip(units).take(count) {
-            *to = *from;
+        if let (Some(to), Some(from)) = (free.get_mut(..count), units.get(..count)) {
+            // `copy_from_slice` has a panic, which is not always seen to be out of reach.
+            to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
         }
         *self.len += count as u16;
+    }
+}
+
+impl<U: Unit> Drop for Destination<'_, U> {
+    #[inline]
+    fn drop(&mut self) {
+        if *self.len < self.before {
+            let before = usize::from(self.before).min(self.units.len());
+            let unused = self.units.get_mut(usize::from(*self.len)..before);
+            unused.unwrap_or_default().fill(U::ZERO);
+        }
     }
 }
 
@@ -183,9 +224,9 @@ pub fn len<U: Unit>(text: &[U]) -> i16 {
 /// ```
 #[inline]
 pub fn find<U: Unit>(text: &[U], pattern: &[U]) -> i16 {
-    // `windows` refuses a length of zero.
-    let length = pattern.len().max(1);
-    text.windows(length).position(|window| window == pattern).map_or(0, |at| saturated(at + 1))
+    let Some(first) = pattern.first() else { return 0 };
+    let is_found = |window: &[U]| window.first() == Some(first) && window == pattern;
+    text.windows(pattern.len()).position(is_found).map_or(0, |at| saturated(at + 1))
 }
 
 /// `LEFT`: the first `count` units.

@@ -31,7 +31,7 @@
 
 use staunch_runtime::{Context, Fault, OrFault, Text};
 
-use staunch_runtime::{firmware, iec, ops, strips, text, time};
+use staunch_runtime::{firmware, iec, ops, strips, time};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["statements.st"];
@@ -153,9 +153,11 @@ impl Main {
         self.half = half;
         self.sum = self.sum.wrapping_add(twice_2.wrapping_mul(10));
         self.t.call(self.go, time::ms(1000), cx); // :21
-        self.s = Text::from_text(
-            &Text::<9>::build(|out| text::concat(b"a", self.s.as_bytes(), out)),
-        ); // :22
+        self.s = Text::build(|out| {
+            // :22
+            out.write(b"a");
+            out.write(self.s.as_bytes());
+        });
         Ok(())
     }
 }

@@ -34,23 +34,23 @@ impl<'s> Checker<'_, 's> {
         let library = self.decl.dialect(name.span).rules().functions.choice;
         let (matiec, strucpp) = (library == Functions::OfMatiec, library == Functions::OfStrucpp);
         let value = if strucpp && ty.is_time() { self.stored_count(value, ty, name.span)? } else { value };
-        let (op, operand, longest) = match ty {
-            Elementary::Bool => (TextOp::FromBool, Elementary::Bool, 5),
-            Elementary::Real | Elementary::Lreal if matiec => (TextOp::FromGeneral, Elementary::Lreal, 17),
-            Elementary::Real | Elementary::Lreal if strucpp => (TextOp::FromShort, Elementary::Lreal, 13),
-            Elementary::Real => (TextOp::FromReal, Elementary::Real, 16),
-            Elementary::Lreal => (TextOp::FromLreal, Elementary::Lreal, 24),
-            Elementary::Lword if matiec => (TextOp::FromBits, Elementary::Ulint, 19),
-            Elementary::Ulint | Elementary::Lword => (TextOp::FromUlint, Elementary::Ulint, 20),
-            _ if ty.is_time() && matiec => (TextOp::FromSeconds, Elementary::Lint, 40),
-            _ if ty.is_bits() && matiec => (TextOp::FromBits, Elementary::Ulint, 19),
-            _ if ty.is_time() && !strucpp => (TextOp::FromTime, Elementary::Lint, 40),
-            _ => (TextOp::FromLint, Elementary::Lint, 20),
+        let (op, operand) = match ty {
+            Elementary::Bool => (TextOp::FromBool, Elementary::Bool),
+            Elementary::Real | Elementary::Lreal if matiec => (TextOp::FromGeneral, Elementary::Lreal),
+            Elementary::Real | Elementary::Lreal if strucpp => (TextOp::FromShort, Elementary::Lreal),
+            Elementary::Real => (TextOp::FromReal, Elementary::Real),
+            Elementary::Lreal => (TextOp::FromLreal, Elementary::Lreal),
+            Elementary::Lword if matiec => (TextOp::FromBits, Elementary::Ulint),
+            Elementary::Ulint | Elementary::Lword => (TextOp::FromUlint, Elementary::Ulint),
+            _ if ty.is_time() && matiec => (TextOp::FromSeconds, Elementary::Lint),
+            _ if ty.is_bits() && matiec => (TextOp::FromBits, Elementary::Ulint),
+            _ if ty.is_time() && !strucpp => (TextOp::FromTime, Elementary::Lint),
+            _ => (TextOp::FromLint, Elementary::Lint),
         };
         let mut operands = vec![self.convert(Conversion::Value, Type::Elementary(operand), value)];
         operands.extend(self.kind_of_time(op, ty, name.span));
         let number = operands.first().cloned()?;
-        let text = self.text_function_of(op, Type::string(longest), operands, name.span)?;
+        let text = self.text_function_of(op, Type::string(op.longest()?), operands, name.span)?;
         let has_sign = ty.is_integer() && self.decl.dialect(name.span).rules().writes_plus();
         if has_sign { self.with_plus(text, number, name.span) } else { Some(text) }
     }

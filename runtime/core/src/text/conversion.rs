@@ -93,8 +93,7 @@ pub fn from_lint(value: i64, out: &mut Destination<'_>) {
 /// In decimal.
 #[inline]
 pub fn from_ulint(value: u64, out: &mut Destination<'_>) {
-    // Writing to a destination cuts, and cannot fail.
-    _ = format::number(out, value, 1);
+    out.write(format::digits(value, 1, &mut [0; format::MOST_DIGITS]));
 }
 
 /// The fewest digits that read back the same: `0.1`, `1.0`, `1e21`.
