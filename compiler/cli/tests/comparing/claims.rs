@@ -673,9 +673,10 @@ END_PROGRAM
     }
 }
 
-/// OpenPLC has no check of subranges: what is a fault on both sides here is one on the other system alone.
+/// OpenPLC has no check of subranges, nor has CODESYS without functions for it (its help, "Subrange type"): what is a fault
+/// on both sides here is one on the other system alone.
 #[test]
-fn a_fault_of_a_subrange_is_none_on_openplc() {
+fn a_fault_of_a_subrange_is_none_on_systems_that_store_it() {
     let source = "PROGRAM p
 VAR_INPUT s : BOOL; END_VAR
 VAR n : INT (0..3); END_VAR
@@ -685,13 +686,35 @@ o := n > 2;
 END_PROGRAM
 ";
     let assumed = OWN.written("no_run_of_subrange.txt", "no run\n");
-    for (from, to) in [("openplc", "codesys"), ("iec", "openplc4")] {
+    for (from, to) in [("openplc", "cscape"), ("iec", "openplc4"), ("iec", "codesys")] {
         let (code, text) =
             compare("subrange", source, &["--from", from, "--to", to, "--vars", "o", "--assume", &assumed]);
         assert_eq!(code, Some(1), "{text}");
         assert!(text.contains("one system faults here, and the other goes on"), "{text}");
     }
     let (code, text) =
-        compare("subrange", source, &["--from", "iec", "--to", "codesys", "--vars", "o", "--assume", &assumed]);
+        compare("subrange", source, &["--from", "iec", "--to", "cscape", "--vars", "o", "--assume", &assumed]);
     assert_eq!(code, Some(0), "{text}");
+}
+
+/// An integer divided by 0 ends a program on x86, and is 0 on ARM of 64 bits ("SDIV"); CODESYS leaves it to the target (its
+/// help, "DIV"). Where it is reached, nothing is called equal to a system that does otherwise; where it is not, it is.
+#[test]
+fn a_division_by_zero_that_is_reached_is_not_equal() {
+    let source = "PROGRAM p
+VAR_INPUT d : INT(0..3); END_VAR
+VAR_OUTPUT o : INT; END_VAR
+o := 12 / d;
+END_PROGRAM
+";
+    let assumed = OWN.written("no_run_of_division.txt", "no run\n");
+    let guarded = source.replace("o := ", "IF d > 0 THEN o := ").replace("12 / d;", "12 / d; END_IF");
+    for (from, to) in [("iec", "openplc"), ("openplc4", "iec"), ("iec", "codesys"), ("codesys", "openplc")] {
+        let arguments = ["--from", from, "--to", to, "--assume", &assumed];
+        let (code, text) = compare("divided", source, &arguments);
+        assert_eq!(code, Some(4), "{text}");
+        assert!(text.contains("a fault that ends both programs here, division by zero in line 4; "), "{text}");
+        let (code, text) = compare("guarded", &guarded, &arguments);
+        assert_eq!(code, Some(0), "{text}");
+    }
 }
