@@ -120,7 +120,7 @@ fn each_variant(
     let (mut shown, mut of) = (own, variant.clone());
     for variant in variant.others() {
         let Some(programs) = programs(&variant)? else {
-            others.push(Other { variant, verdict: "rejected", scans: None });
+            others.push(Other::rejected(variant));
             continue;
         };
         let next = side_by_side(report, programs, renamed)?;
@@ -129,7 +129,7 @@ fn each_variant(
             true => (std::mem::replace(&mut shown, next), std::mem::replace(&mut of, variant)),
             false => (next, variant),
         };
-        others.push(Other::of(variant, &next.verdict, next.rest.as_ref()));
+        others.push(Other::of(variant, &next.verdict, next.rest.as_ref(), next.without_run.as_ref()));
     }
     let Compared { pair, world, findings, accepted, verdict, rest, without_run } = &mut shown;
     if let (Some(path), Verdict::Differs { rows, trace, .. }) = (report.args.picture(), &*verdict) {

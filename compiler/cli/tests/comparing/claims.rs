@@ -160,6 +160,27 @@ END_PROGRAM
     assert!(json.contains(settings), "{json}");
 }
 
+/// CODESYS keeps the count over STOP -> RUN whatever CTU does at its preset; without that, only the CTU that goes on parts
+/// from OPENPLC, which stops there.
+#[test]
+fn each_setting_says_what_differs_without_stop_to_run() {
+    let source = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c : CTU; END_VAR
+c(s, r OR c.CV > 5, 3);
+END_PROGRAM
+";
+    let arguments = ["--from", "codesys", "--to", "openplc", "--vars", "c.CV"];
+    let (code, text) = compare("open_run", source, &arguments);
+    assert_eq!(code, Some(1), "{text}");
+    let other = "With `ctu-stop-at-pv = true`, the two differ after 2 scans; without STOP -> RUN, the two are equal.";
+    assert!(text.contains(other), "{text}");
+    let shown = "The advice is right with `ctu-stop-at-pv = false`; with other settings it may not be.";
+    assert!(text.contains("the two differ after 7 scans") && text.contains(shown), "{text}");
+    let (_, json) = compare("open_run_json", source, &[&arguments[..], &["--message-format", "json"]].concat());
+    assert!(json.contains("\"verdict\":\"different\",\"without_run\":\"equal\"}]"), "{json}");
+}
+
 /// A project that has asked its vendor decides it.
 #[test]
 fn what_the_project_decides_is_the_verdict() {
