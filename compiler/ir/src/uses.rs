@@ -31,10 +31,13 @@ pub enum Part {
     MovingPreset,
     /// An assignment to a variable of a subrange that faults. No program notes it, since most have none.
     Subrange,
+    /// A division of integers, or MOD, by 0 that is reached. No program notes it: most divide by what is not 0.
+    DivisionByZero,
 }
 
 impl Part {
-    pub const ALL: [Self; 5] = [Self::Enable, Self::Temp, Self::LimitOfType, Self::MovingPreset, Self::Subrange];
+    pub const ALL: [Self; 6] =
+        [Self::Enable, Self::Temp, Self::LimitOfType, Self::MovingPreset, Self::Subrange, Self::DivisionByZero];
 
     /// In words, for tables and messages.
     pub const fn words(self) -> &'static str {
@@ -44,6 +47,7 @@ impl Part {
             Self::LimitOfType => "FOR to the limit of its counter's type",
             Self::MovingPreset => "a PT that moves",
             Self::Subrange => "a value outside of a subrange",
+            Self::DivisionByZero => "integer division by 0",
         }
     }
 }

@@ -32,11 +32,12 @@ use difference::pitfall;
 use findings::finding::Findings;
 use other::{fixed, logix, migrated, missing, renamed};
 use pair::{Pair, Side};
+use program::usage;
 use report::{Report, picture, rejection};
 use search::tolerance::Tolerance;
 use search::world::World;
 use staunch_frontend::Dialect;
-use staunch_frontend::rules::{Part, is_followed};
+use staunch_frontend::rules::{Part, otherwise};
 use staunch_ir::Program;
 use variants::Variant;
 use verdict::{Judged, Other, Verdict, WithoutRun, judge};
@@ -119,7 +120,7 @@ fn each_variant(
     let (mut shown, mut of) = (own, variant.clone());
     for variant in variant.others() {
         let Some(programs) = programs(&variant)? else {
-            others.push(Other { variant, verdict: "rejected", scans: None });
+            others.push(Other::rejected(variant));
             continue;
         };
         let next = side_by_side(report, programs, renamed)?;
@@ -128,7 +129,7 @@ fn each_variant(
             true => (std::mem::replace(&mut shown, next), std::mem::replace(&mut of, variant)),
             false => (next, variant),
         };
-        others.push(Other::of(variant, &next.verdict, next.rest.as_ref()));
+        others.push(Other::of(variant, &next.verdict, next.rest.as_ref(), next.without_run.as_ref()));
     }
     let Compared { pair, world, findings, accepted, verdict, rest, without_run } = &mut shown;
     if let (Some(path), Verdict::Differs { rows, trace, .. }) = (report.args.picture(), &*verdict) {
@@ -147,9 +148,7 @@ fn side_by_side(
 ) -> Result<Compared, String> {
     let args = report.args;
     let cycle = run::cycle(report.session, args.cycle.as_deref())?;
-    let checks = [args.from.dialect, args.to.dialect].map(|it| is_followed(it, Part::Subrange));
-    let may_be_stored = checks[0] != checks[1] && !program.bounds.is_empty();
-    let same_program = !may_be_stored && is_same(&program, &moved);
+    let same_program = !may_end_otherwise(args, &program) && is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
     pair.is_ported = !report.notes.is_empty();
@@ -185,6 +184,13 @@ fn side_by_side(
     };
     let without_run = judge::without_run(&mut pair, &world, args, &verdict);
     Ok(Compared { pair, world, findings, accepted, verdict, rest, without_run })
+}
+
+/// Whether one program may go on, on one of the systems alone, where it ends by a fault here.
+fn may_end_otherwise(args: &Compare, program: &Program) -> bool {
+    let [from, to] = [args.from.dialect, args.to.dialect];
+    let differs = |part| otherwise(from, part).map(|it| it.what) != otherwise(to, part).map(|it| it.what);
+    differs(Part::Subrange) && !program.bounds.is_empty() || differs(Part::DivisionByZero) && usage::divides(program)
 }
 
 /// What is to be compared is there on both sides: what is not would be passed over in silence.

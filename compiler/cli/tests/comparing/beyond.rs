@@ -1,7 +1,7 @@
 //! What a move changes beside counters, planted one kind a program: `staunch compare` lists it at the user's own
 //! line, with the scans that show it.
 
-use super::programs::{self, Folder};
+use super::programs::{self, Folder, moved};
 
 const OWN: Folder = Folder("beyond");
 
@@ -177,28 +177,11 @@ share := 100 / (c.CV - 3);",
     },
 ];
 
-/// A program, by its path.
-fn program(name: &str, source: &str) -> String {
-    OWN.written(&format!("{name}.st"), &format!("PROGRAM p\n{source}\nEND_PROGRAM\n"))
-}
-
-/// The exit code, and what is printed of the verdict.
-fn compare(path: &str, from: &str, to: &str, more: &[&str]) -> (Option<i32>, String) {
-    let budget = if more.contains(&"--budget") { "20000" } else { "400000" };
-    let more = more.iter().filter(|it| !["--budget", "20000"].contains(*it));
-    let output = programs::command()
-        .args([path, "--from", from, "--to", to, "-A", "warnings", "--budget", budget])
-        .args(more)
-        .output()
-        .expect("the command starts");
-    (output.status.code(), String::from_utf8_lossy(&output.stdout).into_owned())
-}
-
 #[test]
 fn each_kind_is_found_at_its_line() {
     for it in PLANTED {
-        let path = program(it.name, it.source);
-        let (code, text) = compare(&path, it.from, it.to, &["--message-format", "json"]);
+        let path = OWN.program(it.name, it.source);
+        let (code, text) = moved(&path, it.from, it.to, &["--message-format", "json"]);
         assert_eq!(code, Some(1), "{}: {text}", it.name);
         let of = format!("\"kind\":\"{}\",\"at\":\"{}:{}\"", it.kind, path, it.line);
         let found =
@@ -219,16 +202,16 @@ low := n; a := both; b := MAX(a, 0);
 IF b > 10 THEN hit := TRUE; ELSE hit := FALSE; END_IF
 c(CU := hit, R := FALSE, PV := 1);
 big := n + k; wide := big > 40000;";
-    let path = program("followed", source);
+    let path = OWN.program("followed", source);
     for (from, to) in [("iec", "openplc"), ("openplc", "iec")] {
         for shown in ["hit", "c.Q", "b"] {
-            let (code, text) = compare(&path, from, to, &["--vars", shown]);
+            let (code, text) = moved(&path, from, to, &["--vars", shown]);
             assert_eq!(code, Some(1), "{text}");
             let reason = format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path);
             assert!(text.contains(&reason) && !text.contains("(variable, "), "{text}");
         }
     }
-    let (_, text) = compare(&path, "iec", "codesys", &["--vars", "wide"]);
+    let (_, text) = moved(&path, "iec", "codesys", &["--vars", "wide"]);
     assert!(text.contains(&format!("`wide` follows from `big` (width, {}:7): ", path)), "{text}");
 }
 
@@ -236,92 +219,19 @@ big := n + k; wide := big > 40000;";
 #[test]
 fn what_does_not_differ_is_not_found() {
     let timer = PLANTED.iter().find(|it| it.name == "timer").expect("it is planted");
-    let path = program("accepted", timer.source);
+    let path = OWN.program("accepted", timer.source);
     let accept = OWN.path().join("accepted.txt");
     std::fs::write(&accept, "c 2: nobody reads the count past its preset\nc 1: it is fed edges\n").expect("a file");
-    let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
+    let (code, text) = moved(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("`late` (timer, ") && text.contains("what the block is given differs"), "{text}");
-    let path = program(
+    let path = OWN.program(
         "alike",
         "VAR_INPUT a : BOOL; END_VAR VAR t : TON; n : BOOL; END_VAR\nt(IN := a, PT := T#30ms); n := t.Q;",
     );
-    let (code, text) = compare(&path, "iec", "cscape", &[]);
+    let (code, text) = moved(&path, "iec", "cscape", &[]);
     assert_eq!(code, Some(0), "{text}");
     assert!(!text.contains("reachable after"), "{text}");
-}
-
-/// Only what is accepted passes: the search goes on beyond it, and compares what does not follow from it.
-#[test]
-fn what_is_not_accepted_fails() {
-    let accept = |name: &str, lines: &str| {
-        let path = OWN.path().join(format!("{name}.txt"));
-        std::fs::write(&path, lines).expect("a file");
-        path.display().to_string()
-    };
-    let traps = accept("traps", "* 1: ok\n* 2: ok\n");
-    let text_apart = program(
-        "text_apart",
-        "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR
-VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
-c(s, FALSE, 3); y := CONCAT(y, 'aaaaaaaaaa'); q := LEN(y) > 90;",
-    );
-    let (code, text) = compare(&text_apart, "iec", "cscape", &["--accept", &traps]);
-    assert_eq!(code, Some(1), "{text}");
-    assert!(text.contains("`y` (width, "), "{text}");
-    let all = accept("traps_and_width", "* 1: ok\n* 2: ok\ny width: never so long\nq output: it is not wired\n");
-    let (code, text) = compare(&text_apart, "iec", "cscape", &["--accept", &all]);
-    assert_eq!(code, Some(0), "{text}");
-    // The programs themselves are not the same, where no counter has parted.
-    let declared = "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; END_VAR VAR_OUTPUT x : BOOL; END_VAR\n";
-    let one = program("one_text", &format!("{declared}c(s, FALSE, 3); x := c.CV = 1 AND NOT s;"));
-    let other = program("other_text", &format!("{declared}c(s, FALSE, 3); x := FALSE;"));
-    let against = ["--accept", &traps, "--against", &other];
-    let (code, text) = compare(&one, "iec", "cscape", &against);
-    assert_eq!(code, Some(1), "{text}");
-    assert!(text.contains("`x` (variable, ") && text.contains("None of the traps explains it"), "{text}");
-    let known = accept("known", "* 1: ok\n* 2: ok\nx variable: it has no lamp\n");
-    let against = ["--accept", &known, "--against", &other];
-    let (code, text) = compare(&one, "iec", "cscape", &against);
-    assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("Beyond it, and what follows from it, the two are equal"), "{text}");
-}
-
-/// What is not found is not ruled out, whatever is accepted.
-#[test]
-fn nothing_found_is_not_accepted() {
-    let path = program(
-        "untried",
-        "VAR_INPUT v, w : DINT; END_VAR VAR y : STRING; END_VAR VAR_OUTPUT q : BOOL; END_VAR
-IF v * v + w * w = 20193797 AND v > 100 AND w > 100 THEN y := CONCAT(y, 'aaaaaaaaaa'); END_IF q := LEN(y) > 90;",
-    );
-    let accept = OWN.path().join("nobody.txt");
-    std::fs::write(&accept, "* 1: nobody\n").expect("a file");
-    let (code, text) = compare(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
-    assert_eq!(code, Some(4), "{text}");
-}
-
-/// Of two counters of one declaration one is accepted: what the other decides is not ruled out.
-#[test]
-fn what_is_declared_with_what_is_accepted_is_not() {
-    let declared =
-        "VAR_INPUT s : BOOL; END_VAR VAR c : ARRAY[1..2] OF CTU; END_VAR VAR_OUTPUT over, alarm : BOOL; END_VAR\n";
-    let path = program(
-        "beside",
-        &format!(
-            "{declared}c[1](s, c[1].CV > 2, 2); c[2](s, c[2].CV > 2, 9); over := c[1].CV > 2; alarm := c[2].CV > 2;"
-        ),
-    );
-    let accept = OWN.path().join("beside.txt");
-    std::fs::write(&accept, "c[1] 15: nobody reads it\nover output: it is not wired\n").expect("a file");
-    let arguments = ["--accept", &accept.display().to_string()];
-    let (code, text) = compare(&path, "iec", "openplc", &arguments);
-    assert_eq!(code, Some(4), "{text}");
-    assert!(text.contains("what c[2] decides, which is declared with what is accepted"), "{text}");
-    std::fs::write(&accept, "* 15: nobody reads it\nover output: it is not wired\nalarm output: nor is this\n")
-        .expect("a file");
-    let (code, text) = compare(&path, "iec", "openplc", &arguments);
-    assert_eq!(code, Some(0), "{text}");
 }
 
 /// Whether a name changes does not depend on a lint's level; and it is the names of a counter's own pins that count.
@@ -330,28 +240,28 @@ fn a_name_that_changes_is_one_whatever_the_lint_says() {
     let named = "VAR_INPUT s, r : BOOL; END_VAR VAR c, d : CTU; END_VAR\n";
     let body = "c(CU := s, R := r, PV := 3); d(s, r, 3);";
     for (name, allowed) in [("renamed", ""), ("renamed_allowed", "{allow W0609}\n")] {
-        let path = program(name, &format!("{named}{allowed}{body}"));
-        let (_, text) = compare(&path, "iec", "cscape", &["--message-format", "json", "--budget", "20000"]);
+        let path = OWN.program(name, &format!("{named}{allowed}{body}"));
+        let (_, text) = moved(&path, "iec", "cscape", &["--message-format", "json", "--budget", "20000"]);
         for (counter, verdict) in [("c", "reachable"), ("d", "impossible")] {
             let found = format!("\"counter\":\"{counter}\",\"trap\":9,\"verdict\":\"{verdict}\"");
             assert!(text.contains(&found), "{found}\n{text}");
         }
     }
-    let other = program(
+    let other = OWN.program(
         "renamed_other",
         "VAR_INPUT s : BOOL; END_VAR VAR c : CTU; latch : RS; END_VAR\nlatch(S := s, R1 := FALSE);",
     );
-    let (_, text) = compare(&other, "iec", "codesys", &["--message-format", "json", "--budget", "20000"]);
+    let (_, text) = moved(&other, "iec", "codesys", &["--message-format", "json", "--budget", "20000"]);
     assert!(text.contains("\"counter\":\"c\",\"trap\":9,\"verdict\":\"impossible\""), "{text}");
 }
 
 /// An assumption beyond a subrange would make a stimulus that no run takes.
 #[test]
 fn an_assumption_lies_within_the_subrange() {
-    let path = program("subrange", "VAR_INPUT t : INT(1..9); END_VAR VAR o : BOOL; END_VAR\no := t > 3;");
+    let path = OWN.program("subrange", "VAR_INPUT t : INT(1..9); END_VAR VAR o : BOOL; END_VAR\no := t > 3;");
     let assume = OWN.path().join("beyond_subrange.txt");
     std::fs::write(&assume, "t 20..30\n").expect("a file");
-    let (code, _) = compare(&path, "iec", "cscape", &["--assume", &assume.display().to_string()]);
+    let (code, _) = moved(&path, "iec", "cscape", &["--assume", &assume.display().to_string()]);
     assert_eq!(code, Some(2));
 }
 
@@ -364,8 +274,8 @@ fn a_guard_that_makes_no_edge_is_no_trap() {
 e(CLK := p); c(e.Q{guard}, l, 2); low := c.CV < 0;"
         )
     };
-    let (plain, guarded) = (program("unguarded", &text("")), program("guarded", &text(" AND c.CV > 0")));
-    let (code, text) = compare(&plain, "iec", "iec", &["--against", &guarded]);
+    let (plain, guarded) = (OWN.program("unguarded", &text("")), OWN.program("guarded", &text(" AND c.CV > 0")));
+    let (code, text) = moved(&plain, "iec", "iec", &["--against", &guarded]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("None of the traps explains it") && !text.contains("reachable after"), "{text}");
 }
@@ -374,45 +284,46 @@ e(CLK := p); c(e.Q{guard}, l, 2); low := c.CV < 0;"
 #[test]
 fn a_kind_is_accepted_by_its_name() {
     let retention = PLANTED.iter().find(|it| it.name == "retention").expect("it is planted");
-    let path = program("accepted_kind", retention.source);
+    let path = OWN.program("accepted_kind", retention.source);
     let accept = OWN.path().join("accepted_kind.txt");
     std::fs::write(&accept, "seen retention: the plant is never stopped while it runs\n").expect("a file");
-    let (code, text) = compare(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
+    let (code, text) = moved(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(0), "{text}");
 }
 
 /// What the other system lacks is said at the user's own line, by what is known of each system.
 #[test]
 fn what_is_lacking_is_said_at_its_line() {
-    let path = program(
+    let path = OWN.program(
         "lacking",
         "VAR_INPUT a : BOOL; END_VAR
 VAR t : TON; latch : SR; mask : WORD; END_VAR
 t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     );
-    let (code, text) = compare(&path, "codesys", "logix", &[]);
+    let (code, text) = moved(&path, "codesys", "logix", &[]);
     assert_eq!(code, Some(1), "{text}");
     for line in ["LOGIX has no TON (`t`)", "LOGIX has no SR (`latch`): there it is SETD", "LOGIX has no WORD (`mask`)"]
     {
         assert!(text.contains(&format!("{}:3: {line}", path)), "{line}\n{text}");
     }
-    let (_, json) = compare(&path, "codesys", "logix", &["--message-format", "json"]);
+    let (_, json) = moved(&path, "codesys", "logix", &["--message-format", "json"]);
     let found = format!("\"kind\":\"missing\",\"at\":\"{}:3\",\"counter\":\"mask\"", path);
     assert!(json.contains(&found), "{json}");
-    let wide = program(
+    let wide = OWN.program(
         "second_edition",
         "VAR_INPUT a : BOOL; END_VAR\nVAR t : LTIME; w : WSTRING; END_VAR\nt := t + LTIME#1ms;",
     );
-    let (code, text) = compare(&wide, "iec", "openplc", &[]);
+    let (code, text) = moved(&wide, "iec", "openplc", &[]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("OPENPLC has no LTIME (`t`): there it is TIME"), "{text}");
     assert!(text.contains("OPENPLC has no WSTRING (`w`)"), "{text}");
-    let (_, text) = compare(&wide, "iec", "cscape", &[]);
+    let (_, text) = moved(&wide, "iec", "cscape", &[]);
     assert!(
         text.contains("Not known: no public document says whether CSCAPE has LTIME (`t`), WSTRING (`w`)."),
         "{text}"
     );
-    let path = program("no_ctud", "VAR_INPUT a : BOOL; END_VAR\nVAR c : CTUD; END_VAR\nc(a, FALSE, FALSE, FALSE, 3);");
+    let path =
+        OWN.program("no_ctud", "VAR_INPUT a : BOOL; END_VAR\nVAR c : CTUD; END_VAR\nc(a, FALSE, FALSE, FALSE, 3);");
     let (code, text) = programs::compare(&[&path, "--from", "iec", "--to", "cscape"]);
     assert_eq!(code, Some(1));
     assert!(text.contains("no_ctud.st:3:"), "{text}");
@@ -421,7 +332,7 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
 /// What the event itself parts is the finding, also where the scan after it hides that; not what follows from it.
 #[test]
 fn what_an_event_parts_is_named_and_not_what_follows() {
-    let path = program(
+    let path = OWN.program(
         "lost_by_an_event",
         "VAR_INPUT i : BOOL; END_VAR
 VAR RETAIN keep : INT; END_VAR
@@ -429,13 +340,13 @@ VAR m : BOOL; END_VAR
 IF i AND NOT m THEN keep := keep + 1; END_IF;
 m := i;",
     );
-    let (code, text) = compare(&path, "iec", "codesys", &[]);
+    let (code, text) = moved(&path, "iec", "codesys", &[]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("`m` (retention") && text.contains("  reachable after 2 scans: trap 11"), "{text}");
     assert!(!text.contains("`keep` (retention"), "both systems keep it:\n{text}");
     let accept = OWN.path().join("lost_by_an_event.txt");
     std::fs::write(&accept, "m 11: the plant is never stopped while it runs\n").expect("a file");
-    let (code, text) = compare(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
+    let (code, text) = moved(&path, "iec", "codesys", &["--accept", &accept.display().to_string()]);
     // The search may end before every state was seen.
     assert!(matches!(code, Some(0 | 4)) && text.contains("That is accepted."), "{text}");
 }
@@ -443,7 +354,7 @@ m := i;",
 /// The verdict is the exit code, also where nobody reads what is printed.
 #[test]
 fn a_reader_that_leaves_does_not_change_the_verdict() {
-    let path = program("left_early", "VAR_INPUT i : BOOL; END_VAR\nVAR c : CTU; END_VAR\nc(CU := i, PV := 2);");
+    let path = OWN.program("left_early", "VAR_INPUT i : BOOL; END_VAR\nVAR c : CTU; END_VAR\nc(CU := i, PV := 2);");
     let command = |arguments: &[&str]| {
         let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_staunch"));
         let (reader, writer) = std::io::pipe().expect("a pipe");

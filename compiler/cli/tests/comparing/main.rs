@@ -2,12 +2,19 @@
 
 mod programs;
 
+mod accepted;
 mod advice;
+mod advised;
 mod beyond;
+mod blamed;
 mod claims;
+mod open;
 mod own;
 mod planted;
+mod port;
 mod reports;
 mod settled;
+mod sides;
 mod traps;
+mod tried;
 mod values;

@@ -111,9 +111,9 @@ impl<'s> Checker<'_, 's> {
         self.assert(claim?, message, span)
     }
 
-    /// Whether the user has a variable or a POU of that name.
+    /// Whether the user has a variable, a POU, or a METHOD around of that name.
     fn is_declared(&self, name: ast::Name<'s>) -> bool {
-        self.scope.get(name.text).is_some() || self.decl.declared(name).is_some()
+        self.scope.get(name.text).is_some() || self.decl.declared(name).is_some() || self.own_routine(name).is_some()
     }
 
     fn outside_of_a_test(&mut self, name: ast::Name<'s>) {

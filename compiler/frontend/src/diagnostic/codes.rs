@@ -117,7 +117,7 @@ codes! {
     E0317 Error "which FUNCTION of a name is called";
     E0318 Error "a call of what has no body";
     E0319 Error "what cannot be implemented outside";
-    E0320 Error "a call of an ABSTRACT METHOD by SUPER";
+    E0320 Error "a call of an ABSTRACT METHOD or PROPERTY by SUPER";
     E0321 Error "a non-retentive assignment";
     E0402 Error "a declaration needs itself";
     E0403 Error "qualifier does not belong here";

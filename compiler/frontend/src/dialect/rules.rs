@@ -15,7 +15,7 @@ pub use choice::{
     RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
 };
 pub use followed::{Followed, Rules};
-pub use not_followed::{EDGES, Edge, NOT_FOLLOWED, NotFollowed, is_followed};
+pub use not_followed::{EDGES, Edge, NOT_FOLLOWED, NotFollowed, is_followed, otherwise};
 pub use staunch_ir::{Part, Use};
 use systems::{CODESYS, CSCAPE, IEC, LOGIX, OPENPLC, OPENPLC4, SIEMENS};
 

@@ -79,6 +79,9 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> bool {
         let Ast::Name(name) = &callee.kind else { return false };
+        if self.calls_own_routine(callee) {
+            return false;
+        }
         if self.signature.is_some() && self.has_destination(*name, arguments, span) {
             return true;
         }

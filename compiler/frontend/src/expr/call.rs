@@ -25,16 +25,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Operand> {
         let own = self.own_of_suite(callee);
         let callee = own.as_ref().unwrap_or(callee);
-        if let Some(value) = self.value_of_name(callee, arguments, expr.span) {
-            return value;
-        }
-        if let Some(value) = self.memory_function(callee, arguments, expr.span) {
-            return value;
-        }
-        if let Some(value) = self.query(callee, arguments, expr.span) {
-            return value;
-        }
-        if let Some(value) = self.new_object(callee, arguments, expr.span) {
+        if let Some(value) = self.known_value(callee, arguments, expr.span) {
             return value;
         }
         if self.logix_statement(callee, arguments, expr.span) {
@@ -63,6 +54,42 @@ impl<'s> Checker<'_, 's> {
                 value.map(Operand::Typed)
             }
         }
+    }
+
+    /// What a call of a name gives that is known here; the inner `None` says that it was reported.
+    fn known_value(
+        &mut self,
+        callee: &ast::Expr<'s>,
+        arguments: &[ast::Argument<'s>],
+        span: Span,
+    ) -> Option<Option<Operand>> {
+        if self.calls_own_routine(callee) {
+            return None;
+        }
+        self.value_of_name(callee, arguments, span)
+            .or_else(|| self.memory_function(callee, arguments, span))
+            .or_else(|| self.query(callee, arguments, span))
+            .or_else(|| self.new_object(callee, arguments, span))
+    }
+
+    /// Whether a statement is a call of a name that is known here, and was checked.
+    fn known_statement(&mut self, callee: &ast::Expr<'s>, arguments: &[ast::Argument<'s>], span: Span) -> bool {
+        if self.calls_own_routine(callee) {
+            return false;
+        }
+        if self.memory_function(callee, arguments, span).is_some()
+            || self.query(callee, arguments, span).is_some()
+            || self.pool_statement(callee, arguments, span).is_some()
+            || self.logix_statement(callee, arguments, span)
+        {
+            return true;
+        }
+        let Ast::Name(name) = &callee.kind else { return false };
+        let value = self.value_of_name(callee, arguments, span);
+        if matches!(value, Some(Some(_))) {
+            self.report_unused(*name, span);
+        }
+        value.is_some()
     }
 
     /// What is written as a call, and looks at what its argument names rather than at a value; the inner `None` says that
@@ -94,19 +121,7 @@ impl<'s> Checker<'_, 's> {
     ) {
         let own = self.own_of_suite(callee);
         let callee = own.as_ref().unwrap_or(callee);
-        if self.memory_function(callee, arguments, expr.span).is_some()
-            || self.query(callee, arguments, expr.span).is_some()
-            || self.pool_statement(callee, arguments, expr.span).is_some()
-            || self.logix_statement(callee, arguments, expr.span)
-        {
-            return;
-        }
-        if let Ast::Name(name) = &callee.kind
-            && let Some(value) = self.value_of_name(callee, arguments, expr.span)
-        {
-            if value.is_some() {
-                self.report_unused(*name, expr.span);
-            }
+        if self.known_statement(callee, arguments, expr.span) {
             return;
         }
         let what = self.checked_callee(callee, arguments, None);

@@ -148,10 +148,22 @@ impl<'s> Checker<'_, 's> {
         matches!(ty, Some(Type::Block(_) | Type::Struct(_)))
     }
 
+    /// Whether a bare name before parentheses is that of a METHOD or ACTION around, which goes before all that is known
+    /// here by its name. In that METHOD itself it is not: it would be recursion.
+    pub(crate) fn calls_own_routine(&self, callee: &ast::Expr<'s>) -> bool {
+        let Ast::Name(name) = &callee.kind else { return false };
+        let own = self.own_routine(*name).filter(|_| !self.scope.is_own(name.text));
+        own.is_some_and(|it| !self.is_itself(it))
+    }
+
     /// Whether a METHOD's own name, in its body, means a FUNCTION: the METHOD itself would be recursion.
     fn is_function_in_method(&self, slot: usize, name: ast::Name<'s>) -> bool {
-        let is_itself = self.slot == Some(slot) && self.decl.all_of_a_name(slot).len() == 1;
-        is_itself && self.decl.dialect(name.span).calls_own_by_this() && self.is_function(name)
+        self.is_itself(slot) && self.decl.dialect(name.span).calls_own_by_this() && self.is_function(name)
+    }
+
+    /// Whether it is the METHOD that is being checked, and the only one of its name.
+    fn is_itself(&self, slot: usize) -> bool {
+        self.slot == Some(slot) && self.decl.all_of_a_name(slot).len() == 1
     }
 
     fn is_function(&self, name: ast::Name<'s>) -> bool {

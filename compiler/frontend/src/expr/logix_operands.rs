@@ -46,7 +46,7 @@ impl<'s> Checker<'_, 's> {
         }
         let own = self.decl.lookup(&[name], Sense::Callee);
         let is_own = matches!(own, Found::One(Meaning::Declared(Entry::Pou(_) | Entry::Global(_))));
-        if is_own || self.scope.get(name.text).is_some() {
+        if is_own || self.scope.get(name.text).is_some() || self.calls_own_routine(callee) {
             return false;
         }
         let Some(given) = operands(arguments, family == Family::Logix) else { return false };

@@ -109,13 +109,24 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_abstract_super(&mut self, routine: usize, span: Span) {
-        let declared = self.decl.pous[routine].ast.name;
+        let &ast::Pou { name: declared, kind, .. } = self.decl.pous[routine].ast;
+        let word = if matches!(kind, PouKind::Getter | PouKind::Setter) { "PROPERTY" } else { "METHOD" };
         self.report(
             Diagnostic::new(Code::E0320, span, format!("`{}` is ABSTRACT, so SUPER has none to call", declared.text))
-                .label("this METHOD has no body")
+                .label(format!("this {word} has no body"))
                 .other(declared.span, "declared here without a body")
-                .help("delete the call, or declare the METHOD without ABSTRACT and write its body"),
+                .help(format!("delete the call, or declare the {word} without ABSTRACT and write its body")),
         );
+    }
+
+    /// Whether SUPER asks for the GET or SET of an ABSTRACT PROPERTY, which is reported.
+    fn is_abstract_super(&mut self, accessor: usize, property: &ast::Expr<'s>, name: ast::Name<'s>) -> bool {
+        let by_super = matches!(&property.bare().kind, Ast::Member(instance, _) if is_super(instance));
+        let is_abstract = by_super && self.decl.pous[accessor].ast.modifiers.is_abstract.is_some();
+        if is_abstract {
+            self.report_abstract_super(accessor, name.span);
+        }
+        is_abstract
     }
 
     /// The PROPERTY that an expression means, with the instance that is written before its name.
@@ -162,6 +173,9 @@ impl<'s> Checker<'_, 's> {
             self.report_no_accessor(name, "GET", "read", routines.setter);
             return Some(None);
         };
+        if self.is_abstract_super(slot, expr, name) {
+            return Some(None);
+        }
         Some(self.accessor(slot, name, instance, &[], expr.span).and_then(|it| self.result_place(it?, expr.span)))
     }
 
@@ -199,6 +213,9 @@ impl<'s> Checker<'_, 's> {
             self.operand(value, None);
             return Some(None);
         };
+        if self.is_abstract_super(slot, target, name) {
+            return Some(None);
+        }
         let value = ast::Argument { kind: ast::ArgumentKind::Positional(value.clone()), span: value.span };
         Some(self.accessor(slot, name, instance, &[value], span).map(drop))
     }

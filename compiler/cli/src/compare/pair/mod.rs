@@ -25,7 +25,7 @@ use settled::Settled;
 use staunch_frontend::rules::{Part, is_followed};
 use staunch_host::{Bookmark, Event, Machine, Snapshot};
 use staunch_ir::{Chars, FieldId, StructId, Value};
-use staunch_runtime::FaultKind;
+use staunch_runtime::{Fault, FaultKind};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -87,6 +87,8 @@ pub struct Pair {
     pub never: Vec<Event>,
     /// Scans that both sides have made together.
     pub scans: u64,
+    /// A fault that both programs have ended with: what each system does then was not compared.
+    pub ended: Option<Fault>,
 }
 
 impl Pair {
@@ -116,6 +118,7 @@ impl Pair {
             remaining: HashMap::new(),
             never: Vec::new(),
             scans: 0,
+            ended: None,
         };
         pair.counters = matching::blocks(&pair.sides, true);
         pair.blocks = matching::blocks(&pair.sides, false);
@@ -278,7 +281,7 @@ impl Pair {
         self.restarted = !self.first && self.sides[0].drive.phases().any(|it| it.1);
         let inputs = &self.inputs;
         let mut number = 0;
-        self.sides.each_mut().map(|side| {
+        let faults = self.sides.each_mut().map(|side| {
             side.before.copy_from_slice(side.machine.state());
             if let Some(event) = step.event {
                 side.drive.start_again(event, &mut side.machine);
@@ -292,7 +295,11 @@ impl Pair {
             }
             number += 1;
             side.drive.scan(side.machine.compiled()).err()
-        })
+        });
+        if let [Some(fault), Some(_)] = faults {
+            self.ended.get_or_insert(fault);
+        }
+        faults
     }
 
     fn equal(&self, matched: Matched, states: [&[u8]; 2]) -> bool {

@@ -213,7 +213,8 @@ impl Judged<'_> {
             let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
         }
         if matches!(self.verdict, Verdict::Differs { .. }) {
-            text.push_str(" What to do is for the settings of that verdict.");
+            let _ =
+                write!(text, " The advice is right with {}; with other settings it may not be.", self.variant.words());
         }
         text.push('\n');
         text

@@ -86,8 +86,10 @@ impl Report<'_> {
                 write!(text, ",\"without_run\":{{\"verdict\":\"{}\",\"scans\":{scans},\"trap\":{trap}}}", it.verdict);
         }
         if !judged.others.is_empty() {
-            let other =
-                |it: &Other| format!("{{\"settings\":{},\"verdict\":{}}}", it.variant.object(), quoted(it.verdict));
+            let other = |it: &Other| {
+                let without = it.without_run.map(|it| format!(",\"without_run\":{}", quoted(it.0))).unwrap_or_default();
+                format!("{{\"settings\":{},\"verdict\":{}{without}}}", it.variant.object(), quoted(it.verdict))
+            };
             let others: Vec<_> = judged.others.iter().map(other).collect();
             let settings = judged.variant.object();
             let _ = write!(text, ",\"settings\":{settings},\"other_settings\":[{}]", others.join(","));

@@ -70,6 +70,7 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
         return None;
     }
     pair.never.push(Event::Run);
+    pair.ended = None;
     let outcome = strategy::search(pair, world, args.budget / WITHOUT_RUN, 0);
     let found = match &outcome.found {
         Some(trace) => {
@@ -116,6 +117,7 @@ fn covers_all(pair: &Pair, world: &World, args: &Compare) -> bool {
     let has_all = args.vars.is_some() || pair.only_one_has(is_output).is_empty();
     has_all
         && world.unfollowed.is_empty()
+        && pair.ended.is_none()
         && world.alphabet.is_exact()
         && pair.whole
         && alphabet::untried(pair).is_empty()

@@ -47,10 +47,12 @@ pub struct Other {
     pub variant: Variant,
     pub verdict: &'static str,
     pub scans: Option<usize>,
+    /// Where the difference needs STOP -> RUN: the verdict without it, and after how many scans the two differ then.
+    pub without_run: Option<(&'static str, Option<usize>)>,
 }
 
 impl Other {
-    pub fn of(variant: Variant, verdict: &Verdict, rest: Option<&Verdict>) -> Self {
+    pub fn of(variant: Variant, verdict: &Verdict, rest: Option<&Verdict>, without_run: Option<&WithoutRun>) -> Self {
         let scans = match verdict {
             Verdict::Differs { rows, .. } => Some(rows.len()),
             Verdict::Equal(_) | Verdict::NotFound { .. } => None,
@@ -61,18 +63,29 @@ impl Other {
             (Weight::NotFound, _) => "not found",
             (Weight::Differs, _) => "different",
         };
-        Self { variant, verdict, scans }
+        Self { variant, verdict, scans, without_run: without_run.map(|it| (it.verdict, it.scans)) }
+    }
+
+    /// One of the two systems rejects the program.
+    pub fn rejected(variant: Variant) -> Self {
+        Self { variant, verdict: "rejected", scans: None, without_run: None }
     }
 
     /// As the end of a sentence.
     pub fn words(&self) -> String {
-        match (self.verdict, self.scans) {
-            ("different", Some(1)) => "the two differ after 1 scan".to_owned(),
-            ("different", Some(scans)) => format!("the two differ after {scans} scans"),
-            ("not found", _) => "no difference was found, and none is ruled out".to_owned(),
-            ("rejected", _) => "one of the two systems rejects the program".to_owned(),
-            (other, _) => format!("the two are {other}"),
-        }
+        let without =
+            self.without_run.map(|(verdict, scans)| format!("; without STOP -> RUN, {}", words(verdict, scans)));
+        words(self.verdict, self.scans) + &without.unwrap_or_default()
+    }
+}
+
+fn words(verdict: &str, scans: Option<usize>) -> String {
+    match (verdict, scans) {
+        ("different", Some(1)) => "the two differ after 1 scan".to_owned(),
+        ("different", Some(scans)) => format!("the two differ after {scans} scans"),
+        ("not found", _) => "no difference was found, and none is ruled out".to_owned(),
+        ("rejected", _) => "one of the two systems rejects the program".to_owned(),
+        (other, _) => format!("the two are {other}"),
     }
 }
 

@@ -8,8 +8,10 @@ use crate::compare::pair::Pair;
 use crate::compare::program::scalar::Instance;
 use crate::compare::search::progress::Outcome;
 use crate::compare::search::world::World;
+use staunch_frontend::Dialect;
+use staunch_frontend::rules::{Part, otherwise};
 use staunch_host::Event;
-use staunch_runtime::Family;
+use staunch_runtime::{Family, Fault, FaultKind};
 use std::fmt::Write;
 
 /// What an exhausted search has shown.
@@ -118,6 +120,20 @@ fn turning(pair: &Pair) -> Option<String> {
     ))
 }
 
+/// What the two systems do after a fault that ends both programs here.
+fn after(pair: &Pair, fault: Fault) -> String {
+    let division = (fault.kind == FaultKind::DivideByZero).then_some(Part::DivisionByZero);
+    let rows = pair.sides.iter().filter_map(|it| otherwise(it.dialect, division?));
+    let there: Vec<String> =
+        rows.map(|it| format!("; {}: {} ({})", system(it.dialect), it.what, it.evidence)).collect();
+    let what = format!("what follows a fault that ends both programs here, {} in line {}", fault.kind, fault.at.line);
+    what + &there.concat()
+}
+
+fn system(dialect: Dialect) -> String {
+    dialect.name().to_ascii_uppercase()
+}
+
 /// What a search that found nothing has tried, and what it has not.
 pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     let alphabet = &world.alphabet;
@@ -159,6 +175,7 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
         left.push("elements of long arrays".to_owned());
     }
     left.extend(world.unfollowed.iter().cloned());
+    left.extend(pair.ended.map(|it| after(pair, it)));
     left.extend(kept(pair).into_iter().chain(of_one(pair)));
     let beside = world.tolerance.iter().flat_map(|it| it.beside.iter().cloned());
     left.extend(listed(beside).map(|it| format!("what {it} decides, which is declared with what is accepted")));

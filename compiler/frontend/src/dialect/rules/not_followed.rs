@@ -18,7 +18,12 @@ pub struct NotFollowed {
 
 /// Whether a dialect does as its system with this part of the language.
 pub fn is_followed(dialect: Dialect, part: Part) -> bool {
-    NOT_FOLLOWED.iter().all(|it| it.dialect != dialect || it.uses != Use::Part(part))
+    otherwise(dialect, part).is_none()
+}
+
+/// What a dialect's system does otherwise with this part of the language.
+pub fn otherwise(dialect: Dialect, part: Part) -> Option<&'static NotFollowed> {
+    NOT_FOLLOWED.iter().find(|it| it.dialect == dialect && it.uses == Use::Part(part))
 }
 
 /// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
@@ -103,6 +108,20 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_strucpp(Use::Part(Part::Temp), "it keeps its value from call to call"),
     of_matiec(Use::Part(Part::Subrange), UNCHECKED),
     of_strucpp(Use::Part(Part::Subrange), UNCHECKED),
+    NotFollowed {
+        dialect: Dialect::Codesys,
+        what: "it is stored, and the program continues, unless the application has CheckRangeSigned and its like; here it is a fault",
+        evidence: "CODESYS help, \"Subrange type\": only these functions check it at run time",
+        uses: Use::Part(Part::Subrange),
+    },
+    of_processor(Dialect::Openplc),
+    of_processor(Dialect::Openplc4),
+    NotFollowed {
+        dialect: Dialect::Codesys,
+        what: "the target decides whether it is an exception; here it is a fault",
+        evidence: "CODESYS help, \"DIV\", \"MOD\"",
+        uses: Use::Part(Part::DivisionByZero),
+    },
     of_strucpp(Use::Part(Part::LimitOfType), ENDLESS),
     of_matiec(Use::Part(Part::LimitOfType), ENDLESS),
     NotFollowed {
@@ -147,6 +166,15 @@ const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
 
 const fn of_strucpp(uses: Use, what: &'static str) -> NotFollowed {
     NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses }
+}
+
+const fn of_processor(dialect: Dialect) -> NotFollowed {
+    NotFollowed {
+        dialect,
+        what: "the processor decides: x86 ends the program, ARM of 64 bits gives 0 and continues; here it is a fault",
+        evidence: "C, 6.5.5: undefined; Arm, \"SDIV\", \"UDIV\": 0",
+        uses: Use::Part(Part::DivisionByZero),
+    }
 }
 
 const CODESYS_TIMES: &str = "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"";

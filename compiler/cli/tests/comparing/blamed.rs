@@ -1,0 +1,187 @@
+//! What a difference is blamed on: what it depends on, and what explains it.
+
+use super::programs::{ENABLED, Folder, NO_EVENT};
+
+const OWN: Folder = Folder("blamed");
+
+/// Both systems keep a RETAIN count in every event: a count below 0 is trap 3 there, whatever happens before it.
+#[test]
+fn a_restart_is_blamed_where_both_keep_nothing_alike() {
+    let source = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR RETAIN c : CTD; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+c(s, l, 3);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let accepted = OWN.written("below.txt", "c 3: the count below 0 is not used\n");
+    let (code, text) = OWN.compare("kept", source, &["--from", "iec", "--to", "codesys", "--accept", &accepted]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(!text.contains("reachable after 2 scans: trap 11"), "{text}");
+    assert!(text.contains("Not accepted: `o output`."), "{text}");
+}
+
+/// `lamp` follows from the second counter; the first parts before it, and decides nothing of it.
+#[test]
+fn the_counter_that_is_blamed_decides_the_difference() {
+    for input in ["s", "s OR c.CV > 90"] {
+        let source = format!(
+            "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR c, d : CTU; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+c(CU := s, R := r, PV := 2);
+d(CU := {input}, R := r, PV := 3);
+lamp := d.CV > 5;
+END_PROGRAM
+"
+        );
+        let (code, text) = OWN.compare("blame", &source, &["--from", "iec", "--to", "openplc", "--vars", "lamp"]);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("Trap 15 (`d`)"), "{text}");
+    }
+}
+
+/// Of two counters that part, the one is blamed without whose rule nothing would differ: here the second comes to differ
+/// first, and what is asked of it does not depend on that.
+#[test]
+fn the_counter_that_is_blamed_makes_the_difference_alone() {
+    let second = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTU; d : CTD; END_VAR
+c(s, FALSE, 3);
+d(s, c.CV = 4, 2);
+o := d.Q;
+END_PROGRAM
+";
+    let element = "PROGRAM p
+VAR_INPUT x, y : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; i : INT; a : ARRAY[0..1] OF CTD; END_VAR
+IF NOT y THEN c(x, x, 1); END_IF;
+IF y THEN i := 1; ELSE i := 0; END_IF;
+a[i](y OR x, c.Q, 1);
+o := a[1].Q;
+END_PROGRAM
+";
+    let none = OWN.written("no_event.txt", NO_EVENT);
+    for (number, source, from, to, said) in [
+        (0, second, "iec", "openplc", "Trap 15 (`c`)"),
+        (1, second, "codesys", "siemens", "Trap 2 (`c`)"),
+        (2, element, "siemens", "openplc4", "Trap 17 (`c`)"),
+    ] {
+        let arguments = ["--from", from, "--to", to, "--vars", "o", "--assume", &none];
+        let (code, text) = OWN.compare(&format!("alone_{number}"), source, &arguments);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(said), "{text}");
+    }
+}
+
+/// A number of a TIME is of milliseconds on IEC and OPENPLC4, and of seconds on OPENPLC: that it is given another PT is why
+/// the timer differs, not that it looks at the time in a later call.
+#[test]
+fn a_timer_that_is_given_another_preset_is_not_blamed() {
+    let source = "PROGRAM p
+VAR_INPUT go : BOOL; END_VAR
+VAR_OUTPUT lamp : BOOL; END_VAR
+VAR ms : DINT := 1500; t : TON; END_VAR
+t(IN := go, PT := DINT_TO_TIME(ms));
+lamp := t.Q;
+END_PROGRAM
+";
+    let (code, text) = OWN.compare("another_preset", source, &["--from", "openplc", "--to", "iec"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("what the block is given differs") && !text.contains("trap 19"), "{text}");
+    let same = source.replace("DINT_TO_TIME(ms)", "T#0s");
+    let (code, text) = OWN.compare("same_preset", &same, &["--from", "openplc", "--to", "iec"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(text.contains("Trap 19 (`t`): TON, TOF and TP on OPENPLC, before and from v4.1,"), "{text}");
+}
+
+/// Of a timer with a PT that is not over at once, no call of OPENPLC comes too late: what differs is what it is given.
+#[test]
+fn a_timer_that_starts_otherwise_is_not_late() {
+    let source = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTU; t : TON; END_VAR
+c(s, r, 2);
+t(IN := c.CV > 2, PT := T#30ms);
+o := t.Q;
+END_PROGRAM
+";
+    let accepted = OWN.written("timer.accept", "c 15: known\no output: known\n");
+    let (code, text) =
+        OWN.compare("timer", source, &["--from", "iec", "--to", "openplc", "--vars", "o", "--accept", &accepted]);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("what the block is given differs") && !text.contains("trap 19"), "{text}");
+}
+
+/// What is one program on both systems is never said to be two: a counter below 0 in one of its calls, a division by zero,
+/// an EN that stops a body.
+#[test]
+fn one_program_is_not_two() {
+    let calls = "PROGRAM p
+VAR_INPUT s : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; END_VAR
+c(s, FALSE, 1);
+c(CD := FALSE);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let division = "PROGRAM p
+VAR_INPUT on : BOOL; END_VAR
+VAR x : DINT := 7; z : DINT; END_VAR
+VAR_OUTPUT y : DINT; END_VAR
+y := x / z;
+END_PROGRAM
+";
+    let none = OWN.written("no_event.txt", NO_EVENT);
+    for (name, source, vars, to, said) in [
+        ("calls", calls, "o", "openplc", "Trap 15 (`c`)"),
+        ("calls", calls, "o", "codesys", "Trap 3 (`c`)"),
+        ("division", division, "y", "logix", "a division by zero ("),
+        ("enable", ENABLED, "off", "siemens", "`En` stops the body of `Pump` on iec alone"),
+        ("enable", ENABLED, "off", "codesys", "`En` stops the body of `Pump` on iec alone"),
+    ] {
+        let arguments = ["--from", "iec", "--to", to, "--vars", vars, "--assume", &none];
+        let (code, text) = OWN.compare(&format!("one_{name}_{to}"), source, &arguments);
+        assert_eq!(code, Some(1), "{name}: {text}");
+        assert!(text.contains(said) && !text.contains("programs are not the same"), "{name}: {text}");
+    }
+}
+
+/// DN of a CTD that is put in place of a block is asked for by nothing, and is no reason.
+#[test]
+fn what_the_port_does_not_read_is_no_reason() {
+    let below = "PROGRAM p
+VAR_INPUT s, l : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR c : CTD; m, b : BOOL; END_VAR
+b := s AND NOT m; m := s;
+c(b, l, 3);
+o := c.CV < 0;
+END_PROGRAM
+";
+    let two = "PROGRAM p
+VAR_INPUT s, r : BOOL; END_VAR
+VAR_OUTPUT o : BOOL; END_VAR
+VAR d : CTD; c : CTU; END_VAR
+d(FALSE, FALSE, 2);
+c(s, r, 2);
+o := d.Q AND c.Q;
+END_PROGRAM
+";
+    let none = OWN.written("no_event.txt", NO_EVENT);
+    for (name, source, from, said) in
+        [("below", below, "openplc", "Trap 15 (`c`)"), ("two", two, "iec", "Trap 5 (`c`)")]
+    {
+        let arguments = ["--from", from, "--to", "logix", "--vars", "o", "--assume", &none, "--budget", "100000"];
+        let (code, text) = OWN.compare(&format!("unread_{name}"), source, &arguments);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains(said) && !text.contains("Trap 4"), "{text}");
+    }
+}
