@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace};
+use crate::scan::{Begun, start_of_scan};
 use crate::signature::{POINTER, clif_type, result_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
@@ -29,6 +30,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) exits: Vec<(i64, clif::Block)>,
     /// Operations of copies so far.
     pub(crate) copied: usize,
+    /// Operations of unrolled loops so far.
+    pub(crate) unrolled: usize,
     /// The FOR loops among them whose counters are in registers.
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
@@ -120,8 +123,10 @@ pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id
     context.func.signature = module.signature(id);
     context.func.name = UserFuncName::user(0, function.as_u32());
     let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
-    let effects = module.effects(id).clone();
-    let mut open = Function::open(module, builder, routine, &effects);
+    let mut effects = module.effects(id).clone();
+    // A scan returns a code also where nothing can fault.
+    effects.faults |= module.is_scanned(id);
+    let mut open = Function::open(module, builder, id, &effects);
     let flow = open.block(&routine.body);
     open.close(flow, &effects);
     let name = module.program.title(routine);
@@ -132,14 +137,18 @@ impl<'a, 'p> Function<'a, 'p> {
     fn open(
         module: &'a mut ModuleEmitter<'p>,
         mut builder: FunctionBuilder<'a>,
-        routine: &'p Routine,
+        id: RoutineId,
         effects: &Effects,
     ) -> Self {
+        let routine = module.program.routine(id);
         let entry = builder.create_block();
         builder.append_block_params_for_function_params(entry);
         builder.switch_to_block(entry);
         builder.seal_block(entry);
-        let start = Start::new(builder.block_params(entry), module.program, routine, effects);
+        let start = match module.is_scanned(id) {
+            true => Start::of_scan(start_of_scan(module, &mut builder)),
+            false => Start::new(builder.block_params(entry), module.program, routine, effects),
+        };
         let exit = builder.create_block();
         let mut function = Self {
             module,
@@ -151,6 +160,7 @@ impl<'a, 'p> Function<'a, 'p> {
             turns: None,
             exits: Vec::new(),
             copied: 0,
+            unrolled: 0,
             counters: Vec::new(),
             registers: Vec::new(),
             checked: effects.checked.clone(),
@@ -314,6 +324,10 @@ pub(crate) enum Flow {
 }
 
 impl Start {
+    fn of_scan(it: Begun) -> Self {
+        Self { context: Some(it.context), globals: Some(it.globals), instance: Some(it.instance), ..Self::default() }
+    }
+
     fn new(values: &[clif::Value], program: &Program, routine: &Routine, effects: &Effects) -> Self {
         let mut values = values.iter().copied();
         let mut next_if = |needed: bool| if needed { values.next() } else { None };

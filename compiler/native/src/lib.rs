@@ -10,9 +10,12 @@ mod error;
 mod target;
 
 mod address;
+mod inline_routine;
 mod module;
 mod operands;
 mod signature;
+
+mod scan;
 
 mod at_once;
 mod expectation;
@@ -23,6 +26,7 @@ mod loop_start;
 mod loops;
 mod statement;
 mod turns;
+mod unrolled;
 
 mod call;
 mod case;

@@ -2,7 +2,7 @@
 
 use crate::address::Address;
 use crate::function::{Function, LocalSlot};
-use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
+use cranelift_codegen::ir::{self as clif, InstBuilder, InstructionData, Opcode, condcodes::IntCC};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::{Known, constant_position};
 use staunch_ir::{ArrayId, Expr, FaultKind, LocalId, Location, Place, Projection, Root, Type};
@@ -62,6 +62,16 @@ impl Function<'_, '_> {
         }
     }
 
+    /// The 0-based position of an index whose code is a constant, as a counter's of an unrolled loop is.
+    fn known_position(&self, index: clif::Value, array: ArrayId) -> Option<u64> {
+        let dfg = &self.builder.func.dfg;
+        let InstructionData::UnaryImm { opcode: Opcode::Iconst, imm } = dfg.insts[dfg.value_def(index).inst()?] else {
+            return None;
+        };
+        let (index, array) = (imm.bits(), self.module.program.array(array));
+        (array.low..=array.high).contains(&index).then(|| index.abs_diff(array.low))
+    }
+
     fn element(&mut self, array: Address, id: ArrayId, index: &Expr, at: Location) -> Address {
         let (program, stride) = (self.module.program, self.module.layout.stride(id));
         if let Some(position) = constant_position(program, index, id) {
@@ -72,6 +82,9 @@ impl Function<'_, '_> {
         let known = Known { program, loops: &self.counters, checked: &checked };
         let needs_check = !known.is_within(index, id);
         let index = self.scalar(index);
+        if let Some(position) = self.known_position(index, id).filter(|_| !needs_check) {
+            return array.plus(position * stride);
+        }
         // Below the lower bound the difference wraps, and is too large as well.
         let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
         if needs_check {
