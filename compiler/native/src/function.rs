@@ -28,6 +28,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) turns: Option<Variable>,
     /// Where the copies of a body that are being emitted leave their loop, after so many turns.
     pub(crate) exits: Vec<(i64, clif::Block)>,
+    /// The block in which no variable of a class was written since all stores were seen.
+    pub(crate) known_in: Option<clif::Block>,
     /// Operations of copies so far.
     pub(crate) copied: usize,
     /// Operations of unrolled loops so far.
@@ -159,6 +161,7 @@ impl<'a, 'p> Function<'a, 'p> {
             loops: Vec::new(),
             turns: None,
             exits: Vec::new(),
+            known_in: None,
             copied: 0,
             unrolled: 0,
             counters: Vec::new(),

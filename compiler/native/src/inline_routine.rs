@@ -6,7 +6,8 @@
 //!                                 store v3, v1
 //! ```
 //!
-//! It applies to a routine whose code is a few instructions and which keeps nothing in a frame of its own. What it stores, and
+//! It applies to a routine whose code is a few instructions and which keeps nothing in a frame of its own and names no
+//! data. What it stores, and
 //! in which order, stays as it is, and so does the code of a fault: the callee's return becomes a jump to what follows the
 //! call. It may not assume that the callee is still called elsewhere: its own function stays, and a linker drops it.
 
@@ -29,7 +30,8 @@ pub(crate) struct SmallRoutines(HashMap<FuncId, Function>);
 impl SmallRoutines {
     /// Notes a routine's code before the code generator changes it, if it is small.
     pub(crate) fn note(&mut self, id: FuncId, function: &Function) {
-        if function.dfg.num_insts() <= SMALL && function.sized_stack_slots.is_empty() {
+        let needs_nothing = function.sized_stack_slots.is_empty() && function.global_values.is_empty();
+        if function.dfg.num_insts() <= SMALL && needs_nothing {
             self.0.insert(id, function.clone());
         }
     }

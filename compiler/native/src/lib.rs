@@ -32,12 +32,15 @@ mod call;
 mod case;
 mod expression;
 mod external;
+mod index;
 mod place;
 mod text;
 
 mod inline_block;
 mod inline_conversion;
 mod inline_op;
+mod inline_timer;
+mod members;
 mod runtime_call;
 
 mod attempt;

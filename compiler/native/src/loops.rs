@@ -34,8 +34,8 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let flow = match self.fixed_turns(it) {
-            Some(values) => self.turns_in_line(&running, &values),
+        let flow = match self.unrolling(it) {
+            Some(unrolling) => self.turns_in_line(&running, unrolling),
             None => self.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]),
         };
         if let Some(register) = running.register {

@@ -12,7 +12,10 @@ use staunch_ir::{Expr, ExprKind, Program, RoutineId, Statement, StatementKind, T
 
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
-    block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
+    block_takes_context: |block, instruction| {
+        let is_called = inline_block::find(block, instruction).is_none();
+        is_called || inline_block::block_info(block).instructions[instruction].needs_context
+    },
     operation_faults: code_faults,
     drops_checks: true,
     scans_take_all: false,

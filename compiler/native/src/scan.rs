@@ -38,6 +38,9 @@ pub(crate) fn start_of_scan(module: &mut ModuleEmitter<'_>, builder: &mut Functi
     builder.switch_to_block(none);
     let no_fault = builder.ins().iconst(CODE, 0);
     builder.ins().jump(done, &[BlockArg::Value(no_fault)]);
+    builder.switch_to_block(done);
+    let code = builder.block_params(done)[0];
+    builder.ins().return_(&[code]);
     builder.switch_to_block(first);
     let at = Address::at(state).plus(module.layout.machine.instances[0]);
     let globals = Address::at(state).plus(module.layout.machine.globals);
@@ -47,12 +50,7 @@ pub(crate) fn start_of_scan(module: &mut ModuleEmitter<'_>, builder: &mut Functi
         scan.prescan(prescan, at);
     }
     let [instance, globals] = [at, globals].map(|it| scan.pointer(it));
-    let start = builder.current_block().expect("where the scan goes on");
-    builder.switch_to_block(done);
-    let code = builder.block_params(done)[0];
-    builder.ins().return_(&[code]);
     builder.seal_all_blocks();
-    builder.switch_to_block(start);
     Begun { context, globals, instance }
 }
 
