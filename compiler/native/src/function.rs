@@ -4,6 +4,7 @@ use crate::Error;
 use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::scan::{Begun, start_of_scan};
+use crate::seen::Seen;
 use crate::signature::{POINTER, clif_type, result_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
@@ -30,6 +31,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) exits: Vec<(i64, clif::Block)>,
     /// The block in which no variable of a class was written since all stores were seen.
     pub(crate) known_in: Option<clif::Block>,
+    /// The checks of indices that hold here.
+    pub(crate) seen: Seen,
     /// Operations of copies so far.
     pub(crate) copied: usize,
     /// Operations of unrolled loops so far.
@@ -162,6 +165,7 @@ impl<'a, 'p> Function<'a, 'p> {
             turns: None,
             exits: Vec::new(),
             known_in: None,
+            seen: Seen::default(),
             copied: 0,
             unrolled: 0,
             counters: Vec::new(),

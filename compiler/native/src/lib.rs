@@ -34,6 +34,7 @@ mod expression;
 mod external;
 mod index;
 mod place;
+mod seen;
 mod text;
 
 mod inline_block;

@@ -4,7 +4,8 @@ use crate::address::{Address, Class, Kind};
 use crate::function::{Function, Temporaries};
 use crate::signature::{POINTER, clif_type};
 use cranelift_codegen::ir::{
-    self as clif, AliasRegionData, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types,
+    self as clif, AliasRegionData, InstBuilder, InstructionData, MemFlagsData, StackSlot, StackSlotData, StackSlotKind,
+    types,
 };
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::{Const, Repr, Type, Value};
@@ -69,8 +70,19 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn store(&mut self, value: clif::Value, to: Address) {
+        let value = self.as_immediate(value);
         let flags = self.writing(to);
         self.ins().store(flags, value, to.base, to.displacement());
+    }
+
+    /// A real constant as the integer of its bits, which an instruction stores without a register.
+    fn as_immediate(&mut self, value: clif::Value) -> clif::Value {
+        let dfg = &self.builder.func.dfg;
+        let bits = match dfg.value_def(value).inst().map(|it| dfg.insts[it]) {
+            Some(InstructionData::UnaryIeee32 { imm, .. }) => imm.bits(),
+            _ => return value,
+        };
+        self.integer(types::I32, bits.into())
     }
 
     /// The flags of a load.

@@ -89,8 +89,11 @@ impl Function<'_, '_> {
             // Below the lower bound the difference wraps, and is too large as well.
             let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
             let last = bounds.high.abs_diff(bounds.low).cast_signed();
-            let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
-            self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+            if !self.seen.has(self.builder.current_block(), (index, id)) {
+                let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
+                self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+                self.seen.note(self.builder.current_block(), (index, id));
+            }
             return self.element_at(array, position, stride);
         }
         // So far behind, at most, that it is no further than the array is long.

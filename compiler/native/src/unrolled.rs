@@ -20,11 +20,12 @@
 use crate::control::Running;
 use crate::function::{Flow, Function, LoopFrame};
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
+use staunch_ir::loops::running;
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{For, Root, StatementKind, Step, Taking, Value, turns};
 
 /// All turns of a loop that is gone come to no more operations than these.
-const MOST: usize = 512;
+const MOST: usize = 256;
 const MOST_TURNS: usize = 32;
 /// Operations of a group.
 const MOST_OF_GROUP: usize = 256;
@@ -50,7 +51,7 @@ impl<'p> Function<'_, 'p> {
         let is_plain = it.is_private && matches!(it.taking, Taking::Each) && !it.may_leave_range();
         let (first, step, count) = values(it).filter(|_| is_plain && !has_loop(it))?;
         let size = turns::size_of(&it.body).max(1);
-        let group = group(count, size, reads(it));
+        let group = group(count, size, reads(it, &self.counters));
         let made = self.unrolled + group * size;
         if group < 2 && count > 1 || made > MOST_IN_A_ROUTINE {
             return None;
@@ -165,12 +166,13 @@ fn values(it: &For) -> Option<(i128, i128, usize)> {
 }
 
 /// How many values straight code of one turn reads; 0 where its branches part the turns.
-fn reads(it: &For) -> usize {
+fn reads(it: &For, around: &[&For]) -> usize {
     let (mut count, mut branches) = (0, false);
     visit::statements(&it.body, &mut |statement| {
         branches |= !matches!(statement.kind, StatementKind::Assign { .. });
         visit::accesses(statement, &mut |place, access| {
-            let is_stored = !matches!(place.root, Root::Local(_)) && !place.is_same_variable(&it.counter);
+            let is_counter = place.is_same_variable(&it.counter) || running(around, place).is_some();
+            let is_stored = !matches!(place.root, Root::Local(_)) && !is_counter;
             count += usize::from(is_stored && access == Access::Read);
         });
     });
