@@ -7,8 +7,9 @@ use crate::limits::{Range, combined, length};
 use crate::visit;
 use crate::{
     ArrayId, Conversion, Expr, ExprKind, For, LocalId, Mode, Op, Place, Program, Root, Routine, Statement,
-    StatementKind, Type, Value,
+    StatementKind, Step, Type, Value,
 };
+use staunch_runtime::Repr;
 
 /// The condition of `IF … THEN EXIT; END_IF`.
 pub fn exit_condition(statement: &Statement) -> Option<&Expr> {
@@ -123,7 +124,29 @@ impl Known<'_> {
         {
             return self.program.range(place.ty);
         }
-        running(self.loops, place).map(|at| self.loops[at].bounds())
+        running(self.loops, place).map(|at| self.counter(at))
+    }
+
+    /// What the counter of a loop may be. Its first and last value are found when it starts, in the loops around it.
+    fn counter(&self, at: usize) -> Range {
+        let it = self.loops[at];
+        let around = Self { loops: &self.loops[..at], ..*self };
+        let [first, last] = [&it.first, &it.last].map(|it| around.range(it));
+        let (first, last) = (first.unwrap_or(it.range), last.unwrap_or(it.range));
+        match it.step {
+            Step::Constant(step) if step > 0 => (first.0, last.1),
+            Step::Constant(_) => (last.0, first.1),
+            Step::Variable(_) => it.range,
+        }
+    }
+
+    /// Whether an operation on integers has the exact result, which is no other than its low bits only if it fits the type.
+    pub fn is_exact(&self, expr: &Expr) -> bool {
+        let ExprKind::Apply(op @ (Op::Add | Op::Sub | Op::Mul), operands) = &expr.kind else { return false };
+        let [a, b] = operands.as_slice() else { return false };
+        let whole = self.program.repr(expr.ty).and_then(Repr::range);
+        let exact = self.range(a).zip(self.range(b)).and_then(|(a, b)| combined(*op, a, b));
+        whole.zip(exact).is_some_and(|(whole, exact)| whole.0 <= exact.0 && exact.1 <= whole.1)
     }
 }
 

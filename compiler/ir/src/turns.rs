@@ -27,6 +27,11 @@ pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool)
     })
 }
 
+/// About how many operations statements are.
+pub fn size_of(block: &[Statement]) -> usize {
+    size::size(block)
+}
+
 /// About how many operations one turn of a loop is that takes one turn itself, and whose statements take none;
 /// `None` for other loops.
 pub fn size_of_single(

@@ -1,8 +1,9 @@
 //! Calls of routines and of standard blocks.
 
-use crate::address::Address;
+use crate::address::{Address, Class};
 use crate::function::Function;
-use crate::inline_block::{self, block_info, offset};
+use crate::inline_block::{self, block_info};
+use crate::members::offset;
 use crate::place::PlaceValue;
 use crate::runtime_call::by_pointer;
 use crate::signature::result_type;
@@ -57,6 +58,8 @@ impl Function<'_, '_> {
             self.spill_turns();
         }
         let call = self.ins().call(function, values);
+        // Its code may take the call's place.
+        self.known_in = None;
         let results = self.builder.inst_results(call).to_vec();
         if !faults {
             return results.first().copied();
@@ -120,8 +123,8 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn store_pins(&mut self, info: &BlockInfo, address: Address, values: &[clif::Value]) {
-        for (pin, value) in info.inputs().zip(values) {
-            self.store(*value, address.plus(offset(pin.offset)));
+        for (at, (pin, value)) in info.inputs().zip(values).enumerate() {
+            self.store(*value, address.plus(offset(pin.offset)).of(Class::of_pin(info, at)));
         }
     }
 

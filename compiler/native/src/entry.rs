@@ -2,14 +2,12 @@
 //! `staunch_scan`, and for objects the data `staunch_map` and `staunch_map_len`.
 
 use crate::Error;
-use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace, define_data};
-use crate::signature::{CODE, POINTER};
-use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, UserFuncName, types};
+use crate::scan::Scan;
+use crate::signature::{CODE, POINTER, SCAN, of_scan};
+use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, Signature, UserFuncName, types};
 use cranelift_frontend::{FunctionBuilder, Switch};
 use cranelift_module::{FuncId, Linkage, Module};
-use staunch_ir::RoutineId;
-use staunch_runtime::Context;
 
 /// Runs of zeros in the initial image that are at least this long are not kept as data.
 const GAP: usize = 256;
@@ -22,9 +20,11 @@ pub(crate) struct EntryPoints {
 }
 
 pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace) -> Result<EntryPoints, Error> {
-    let init = define(module, workspace, "staunch_init", &[POINTER], &[], init)?;
-    let parameters = [POINTER, POINTER, types::I32];
-    let scan = define(module, workspace, "staunch_scan", &parameters, &[CODE], scan)?;
+    let init = define(module, workspace, "staunch_init", of_init, init)?;
+    let scan = match module.scan() {
+        Some(of_a_routine) => of_a_routine,
+        None => define(module, workspace, SCAN, of_scan, scan)?,
+    };
     Ok(EntryPoints { init, scan })
 }
 
@@ -32,13 +32,11 @@ fn define(
     module: &mut ModuleEmitter<'_>,
     workspace: &mut Workspace,
     name: &str,
-    params: &[clif::Type],
-    returns: &[clif::Type],
+    of: fn(&mut Signature),
     emit: fn(&mut ModuleEmitter<'_>, &mut FunctionBuilder<'_>, &[clif::Value]),
 ) -> Result<FuncId, Error> {
     let mut signature = module.output.make_signature();
-    signature.params.extend(params.iter().map(|ty| AbiParam::new(*ty)));
-    signature.returns.extend(returns.iter().map(|ty| AbiParam::new(*ty)));
+    of(&mut signature);
     let id = module.output.declare_function(name, Linkage::Export, &signature)?;
     let context = &mut workspace.context;
     context.func.signature = signature;
@@ -53,6 +51,10 @@ fn define(
     builder.finalize(module.output.target_config());
     module.define(context, id, name)?;
     Ok(id)
+}
+
+fn of_init(signature: &mut Signature) {
+    signature.params.push(AbiParam::new(POINTER));
 }
 
 /// `staunch_init(state)`: zeros, and over them the parts of the initial image that are not.
@@ -111,71 +113,6 @@ fn scan(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>, value
     builder.switch_to_block(done);
     let code = builder.block_params(done)[0];
     builder.ins().return_(&[code]);
-}
-
-struct Scan<'s, 'p, 'b> {
-    module: &'s mut ModuleEmitter<'p>,
-    builder: &'s mut FunctionBuilder<'b>,
-    state: clif::Value,
-    context: clif::Value,
-    done: clif::Block,
-}
-
-impl Scan<'_, '_, '_> {
-    /// Before the first scan of any PROGRAM, what starts the instances of all.
-    fn starts(&mut self) {
-        for (number, start) in self.module.program.starts() {
-            let at = Address::at(self.state).plus(self.module.layout.machine.instances[number]);
-            self.prescan(start, at);
-        }
-    }
-
-    fn instance(&mut self, number: usize) {
-        let class = self.module.program.class(self.module.program.instances[number].program);
-        let at = Address::at(self.state).plus(self.module.layout.machine.instances[number]);
-        if let Some(prescan) = class.prescan {
-            self.prescan(prescan, at);
-        }
-        let code = self.call(class.body, at);
-        self.builder.ins().jump(self.done, &[BlockArg::Value(code)]);
-    }
-
-    /// In the first scan, and only on if it does not fault.
-    fn prescan(&mut self, routine: RoutineId, at: Address) {
-        let offset = core::mem::offset_of!(Context, first_scan);
-        let offset = i32::try_from(offset).expect("a context is small");
-        let flags = MemFlagsData::trusted();
-        let first_scan = self.builder.ins().load(types::I8, flags, self.context, offset);
-        let [prescan, body] = [(); 2].map(|()| self.builder.create_block());
-        self.builder.ins().brif(first_scan, prescan, &[], body, &[]);
-        self.builder.switch_to_block(prescan);
-        let code = self.call(routine, at);
-        self.builder.ins().brif(code, self.done, &[BlockArg::Value(code)], body, &[]);
-        self.builder.switch_to_block(body);
-    }
-
-    /// Calls a routine of a PROGRAM; gives the code that it returned, or 0.
-    fn call(&mut self, routine: RoutineId, instance: Address) -> clif::Value {
-        let effects = self.module.effects(routine).clone();
-        let function = self.module.output.declare_func_in_func(self.module.function(routine), self.builder.func);
-        let mut values = Vec::new();
-        if effects.context {
-            values.push(self.context);
-        }
-        if effects.uses_globals() {
-            values.push(self.pointer(Address::at(self.state).plus(self.module.layout.machine.globals)));
-        }
-        values.push(self.pointer(instance));
-        let call = self.builder.ins().call(function, &values);
-        match self.builder.inst_results(call).first() {
-            Some(code) => *code,
-            None => self.builder.ins().iconst(CODE, 0),
-        }
-    }
-
-    fn pointer(&mut self, address: Address) -> clif::Value {
-        self.builder.ins().iadd_imm_s(address.base, i64::from(address.displacement()))
-    }
 }
 
 fn immediate(size: usize) -> i64 {

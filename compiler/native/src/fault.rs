@@ -14,6 +14,7 @@ impl Function<'_, '_> {
         let fault = self.fault_block(kind, at);
         let next = self.builder.create_block();
         self.ins().brif(condition, fault, &[], next, &[]);
+        self.seen.goes_on(self.builder.current_block(), next);
         self.go_on_in(next);
     }
 

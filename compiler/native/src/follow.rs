@@ -129,6 +129,7 @@ impl Function<'_, '_> {
         let Some((pointer, slow)) = self.in_line(it) else { return self.load_by_runtime(it, repr) };
         let done = self.builder.create_block();
         self.builder.append_block_param(done, clif_type(repr));
+        self.read_any();
         let value = self.ins().load(clif_type(repr), anywhere(), pointer, 0);
         self.ins().jump(done, &[BlockArg::Value(value)]);
         self.builder.switch_to_block(slow);

@@ -3,6 +3,8 @@
 use crate::Error;
 use crate::address::Address;
 use crate::module::{ModuleEmitter, Workspace};
+use crate::scan::{Begun, start_of_scan};
+use crate::seen::Seen;
 use crate::signature::{POINTER, clif_type, result_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
@@ -27,8 +29,14 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) turns: Option<Variable>,
     /// Where the copies of a body that are being emitted leave their loop, after so many turns.
     pub(crate) exits: Vec<(i64, clif::Block)>,
+    /// The block in which no variable of a class was written since all stores were seen.
+    pub(crate) known_in: Option<clif::Block>,
+    /// The checks of indices that hold here.
+    pub(crate) seen: Seen,
     /// Operations of copies so far.
     pub(crate) copied: usize,
+    /// Operations of unrolled loops so far.
+    pub(crate) unrolled: usize,
     /// The FOR loops among them whose counters are in registers.
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
@@ -120,8 +128,10 @@ pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id
     context.func.signature = module.signature(id);
     context.func.name = UserFuncName::user(0, function.as_u32());
     let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
-    let effects = module.effects(id).clone();
-    let mut open = Function::open(module, builder, routine, &effects);
+    let mut effects = module.effects(id).clone();
+    // A scan returns a code also where nothing can fault.
+    effects.faults |= module.is_scanned(id);
+    let mut open = Function::open(module, builder, id, &effects);
     let flow = open.block(&routine.body);
     open.close(flow, &effects);
     let name = module.program.title(routine);
@@ -132,14 +142,18 @@ impl<'a, 'p> Function<'a, 'p> {
     fn open(
         module: &'a mut ModuleEmitter<'p>,
         mut builder: FunctionBuilder<'a>,
-        routine: &'p Routine,
+        id: RoutineId,
         effects: &Effects,
     ) -> Self {
+        let routine = module.program.routine(id);
         let entry = builder.create_block();
         builder.append_block_params_for_function_params(entry);
         builder.switch_to_block(entry);
         builder.seal_block(entry);
-        let start = Start::new(builder.block_params(entry), module.program, routine, effects);
+        let start = match module.is_scanned(id) {
+            true => Start::of_scan(start_of_scan(module, &mut builder)),
+            false => Start::new(builder.block_params(entry), module.program, routine, effects),
+        };
         let exit = builder.create_block();
         let mut function = Self {
             module,
@@ -150,7 +164,10 @@ impl<'a, 'p> Function<'a, 'p> {
             loops: Vec::new(),
             turns: None,
             exits: Vec::new(),
+            known_in: None,
+            seen: Seen::default(),
             copied: 0,
+            unrolled: 0,
             counters: Vec::new(),
             registers: Vec::new(),
             checked: effects.checked.clone(),
@@ -317,6 +334,10 @@ pub(crate) enum Flow {
 }
 
 impl Start {
+    fn of_scan(it: Begun) -> Self {
+        Self { context: Some(it.context), globals: Some(it.globals), instance: Some(it.instance), ..Self::default() }
+    }
+
     fn new(values: &[clif::Value], program: &Program, routine: &Routine, effects: &Effects) -> Self {
         let mut values = values.iter().copied();
         let mut next_if = |needed: bool| if needed { values.next() } else { None };

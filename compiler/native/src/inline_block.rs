@@ -4,11 +4,12 @@
 
 use crate::address::Address;
 use crate::function::Function;
-use crate::signature::clif_type;
+use crate::inline_timer::{tof, ton, tp};
+use crate::members::Members;
 use cranelift_codegen::ir::condcodes::IntCC;
-use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value as Clif, types};
+use cranelift_codegen::ir::{InstBuilder, Type, Value as Clif, types};
 use staunch_ir::{Place, Repr};
-use staunch_runtime::{BlockInfo, Pin};
+use staunch_runtime::BlockInfo;
 
 /// Stores the inputs and does the step.
 type Emit = fn(&mut Function<'_, '_>, &'static BlockInfo, Address, &[Clif]);
@@ -59,6 +60,12 @@ const INLINE: &[(&str, Emit)] = &[
     ("staunch_openplc_ctud_ulint", ctud_that_stops),
     ("staunch_codesys_ctu_stop_at_pv", ctu_that_stops),
     ("staunch_codesys_lctu_stop_at_pv", ctu_that_stops),
+    ("staunch_iec_ton", ton),
+    ("staunch_iec_tof", tof),
+    ("staunch_iec_tp", tp),
+    ("staunch_iec_lton", ton),
+    ("staunch_iec_ltof", tof),
+    ("staunch_iec_ltp", tp),
     ("staunch_iec_r_trig", r_trig),
     ("staunch_iec_f_trig", f_trig),
     ("staunch_iec_sr", sr),
@@ -75,7 +82,7 @@ pub(crate) fn find(place: &Place, instruction: usize) -> Option<Emit> {
 
 fn ctu(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let up = step.edge("cu", inputs[0]);
     let cv = step.load_count("cv");
     let counted = step.count_up(cv, up);
@@ -87,7 +94,7 @@ fn ctu(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: 
 
 fn ctd(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let down = step.edge("cd", inputs[0]);
     let cv = step.load_count("cv");
     let counted = step.count_down(cv, down);
@@ -100,7 +107,7 @@ fn ctd(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: 
 fn ctud(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     let &[_, _, r, ld, pv] = inputs else { unreachable!("verified IR: every input has a value") };
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let up = step.edge("cu", inputs[0]);
     let down = step.edge("cd", inputs[1]);
     let cv = step.load_count("cv");
@@ -115,7 +122,7 @@ fn ctud(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs:
 
 fn ctu_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let up = step.edge("cu", inputs[0]);
     let cv = step.load_count("cv");
     let pv = step.widen(inputs[2]);
@@ -127,7 +134,7 @@ fn ctu_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Addres
 
 fn ctd_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let down = step.edge("cd", inputs[0]);
     let cv = step.load_count("cv");
     let counted = step.count_down_above_zero(cv, down);
@@ -140,7 +147,7 @@ fn ctd_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Addres
 fn ctud_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     let &[_, _, r, ld, pv] = inputs else { unreachable!("verified IR: every input has a value") };
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let up = step.edge("cu", inputs[0]);
     let down = step.edge("cd", inputs[1]);
     let only_up = step.f.ins().band_not(up, down);
@@ -158,14 +165,14 @@ fn ctud_that_stops(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Addre
 
 fn r_trig(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let q = step.edge("clk", inputs[0]);
     step.store("q", q);
 }
 
 fn f_trig(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let before = step.load("clk_before");
     let q = step.f.ins().band_not(before, inputs[0]);
     step.store("clk_before", inputs[0]);
@@ -174,7 +181,7 @@ fn f_trig(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, input
 
 fn sr(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let q = step.load("q1");
     let kept = step.f.ins().band_not(q, inputs[1]);
     let q = step.f.ins().bor(inputs[0], kept);
@@ -183,44 +190,14 @@ fn sr(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &
 
 fn rs(f: &mut Function<'_, '_>, info: &'static BlockInfo, at: Address, inputs: &[Clif]) {
     f.store_pins(info, at, inputs);
-    let mut step = Counter { f, info, at };
+    let mut step = Members { f, info, at };
     let q = step.load("q1");
     let set = step.f.ins().bor(inputs[0], q);
     let q = step.f.ins().band_not(set, inputs[1]);
     step.store("q1", q);
 }
 
-/// A block's members, by the names of their Rust fields.
-struct Counter<'s, 'a, 'p> {
-    f: &'s mut Function<'a, 'p>,
-    info: &'static BlockInfo,
-    at: Address,
-}
-
-impl Counter<'_, '_, '_> {
-    fn pin(&self, field: &str) -> &'static Pin {
-        let pin = self.info.pins.iter().find(|pin| pin.field == field);
-        pin.expect("a block of the table has the members that its step uses")
-    }
-
-    fn load(&mut self, field: &str) -> Clif {
-        let pin = self.pin(field);
-        self.f.load_as(clif_type(pin.repr()), self.at.plus(offset(pin.offset)))
-    }
-
-    fn store(&mut self, field: &str, value: Clif) {
-        let pin = self.pin(field);
-        self.f.store(value, self.at.plus(offset(pin.offset)));
-    }
-
-    /// A rising edge of `input`, which is also remembered.
-    fn edge(&mut self, field: &str, input: Clif) -> Clif {
-        let memory = format!("{field}_before");
-        let before = self.load(&memory);
-        self.store(&memory, input);
-        self.f.ins().band_not(input, before)
-    }
-
+impl Members<'_, '_, '_> {
     fn repr(&self) -> Repr {
         self.pin("cv").repr()
     }
@@ -245,8 +222,8 @@ impl Counter<'_, '_, '_> {
     }
 
     fn load_count(&mut self, field: &str) -> Clif {
-        let from = self.at.plus(offset(self.pin(field).offset));
-        let (flags, base, displacement) = (MemFlagsData::trusted(), from.base, from.displacement());
+        let from = self.member(field);
+        let (flags, base, displacement) = (self.f.reading(from), from.base, from.displacement());
         match (self.repr().size(), self.repr().is_signed()) {
             (2, true) => self.f.ins().sload16(types::I32, flags, base, displacement),
             (2, false) => self.f.ins().uload16(types::I32, flags, base, displacement),
@@ -257,7 +234,7 @@ impl Counter<'_, '_, '_> {
     }
 
     fn store_count(&mut self, field: &str, value: Clif) {
-        let to = self.at.plus(offset(self.pin(field).offset));
+        let to = self.member(field);
         self.f.store_low(self.repr(), value, to);
     }
 
@@ -389,9 +366,4 @@ pub(crate) fn block_info(place: &Place) -> &'static BlockInfo {
             unreachable!("verified IR: an instance of a standard block")
         }
     }
-}
-
-/// The offset of a pin in its block.
-pub(crate) fn offset(of_pin: usize) -> u64 {
-    u64::try_from(of_pin).expect("blocks are small")
 }

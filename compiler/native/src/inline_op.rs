@@ -28,6 +28,7 @@ const INLINE: &[(Op, Emit)] = &[
     // The instruction takes its count modulo the width as well.
     (Op::Rol, |f, o| f.ins().rotl(o.values[0], o.values[1])),
     (Op::Ror, |f, o| f.ins().rotr(o.values[0], o.values[1])),
+    (Op::Advance, advance),
     (Op::Eq, |f, o| compare(f, o.repr, Order::Equal, o.values[0], o.values[1])),
     (Op::Ne, |f, o| compare(f, o.repr, Order::NotEqual, o.values[0], o.values[1])),
     (Op::Lt, |f, o| compare(f, o.repr, Order::Less, o.values[0], o.values[1])),
@@ -206,6 +207,18 @@ fn shift(f: &mut Function<'_, '_>, o: &Operands, by: fn(&mut Function<'_, '_>, C
     let is_past = f.ins().icmp_imm_s(IntCC::SignedGreaterThanOrEqual, count, width);
     let nothing = f.integer(ty, 0);
     f.ins().select(is_past, nothing, kept)
+}
+
+/// The lower half goes on by a distance, and wraps; the upper half stays.
+fn advance(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
+    let (value, distance) = (o.values[0], o.values[1]);
+    let ty = clif_type(o.repr);
+    let distance = if ty == types::I64 { distance } else { f.ins().ireduce(ty, distance) };
+    let moved = f.ins().iadd(value, distance);
+    let changed = f.ins().bxor(value, moved);
+    let lower = f.integer(ty, (1 << (ty.bits() / 2)) - 1);
+    let changed = f.ins().band(changed, lower);
+    f.ins().bxor(value, changed)
 }
 
 #[derive(Clone, Copy, Debug)]

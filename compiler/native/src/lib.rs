@@ -10,9 +10,12 @@ mod error;
 mod target;
 
 mod address;
+mod inline_routine;
 mod module;
 mod operands;
 mod signature;
+
+mod scan;
 
 mod at_once;
 mod expectation;
@@ -23,17 +26,22 @@ mod loop_start;
 mod loops;
 mod statement;
 mod turns;
+mod unrolled;
 
 mod call;
 mod case;
 mod expression;
 mod external;
+mod index;
 mod place;
+mod seen;
 mod text;
 
 mod inline_block;
 mod inline_conversion;
 mod inline_op;
+mod inline_timer;
+mod members;
 mod runtime_call;
 
 mod attempt;

@@ -34,7 +34,10 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let flow = self.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]);
+        let flow = match self.unrolling(it) {
+            Some(unrolling) => self.turns_in_line(&running, unrolling),
+            None => self.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]),
+        };
         if let Some(register) = running.register {
             self.registers.pop();
             self.counters.pop();
@@ -186,10 +189,15 @@ impl<'p> Function<'_, 'p> {
             }
             (Step::Variable(_), None) => unreachable!("a variable step is evaluated before the loop"),
         };
+        self.set_counter(running, value, true);
+    }
+
+    /// Gives the counter a value of 64 bits, in its register and, if that is wanted, in its storage.
+    pub(crate) fn set_counter(&mut self, running: &Running<'p>, value: clif::Value, is_stored: bool) {
         if let Some(register) = running.register {
             self.builder.def_var(register, value);
         }
-        if running.late.is_some() {
+        if running.late.is_some() || !is_stored {
             return;
         }
         match self.place_value(&running.it.counter) {

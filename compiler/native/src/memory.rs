@@ -1,11 +1,15 @@
 //! Values in memory: addresses, loads and stores, copies, and the frame.
 
-use crate::address::Address;
+use crate::address::{Address, Class, Kind};
 use crate::function::{Function, Temporaries};
 use crate::signature::{POINTER, clif_type};
-use cranelift_codegen::ir::{self as clif, InstBuilder, MemFlagsData, StackSlot, StackSlotData, StackSlotKind, types};
+use cranelift_codegen::ir::{
+    self as clif, AliasRegionData, InstBuilder, InstructionData, MemFlagsData, StackSlot, StackSlotData, StackSlotKind,
+    types,
+};
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::{Const, Repr, Type, Value};
+use std::borrow::Cow;
 
 /// Of the part of the frame for temporaries: that of the largest elementary type.
 const TEMPORARY_ALIGN: u64 = 8;
@@ -19,7 +23,7 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn slot_address(&mut self, slot: StackSlot) -> Address {
-        Address::at(self.ins().stack_addr(POINTER, slot, 0))
+        Address::own(self.ins().stack_addr(POINTER, slot, 0))
     }
 
     /// Space until the end of the statement.
@@ -61,16 +65,71 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn load_as(&mut self, ty: clif::Type, from: Address) -> clif::Value {
-        self.ins().load(ty, MemFlagsData::trusted(), from.base, from.displacement())
+        let flags = self.reading(from);
+        self.ins().load(ty, flags, from.base, from.displacement())
     }
 
     pub(crate) fn store(&mut self, value: clif::Value, to: Address) {
-        self.ins().store(MemFlagsData::trusted(), value, to.base, to.displacement());
+        let value = self.as_immediate(value);
+        let flags = self.writing(to);
+        self.ins().store(flags, value, to.base, to.displacement());
+    }
+
+    /// A real constant as the integer of its bits, which an instruction stores without a register.
+    fn as_immediate(&mut self, value: clif::Value) -> clif::Value {
+        let dfg = &self.builder.func.dfg;
+        let bits = match dfg.value_def(value).inst().map(|it| dfg.insts[it]) {
+            Some(InstructionData::UnaryIeee32 { imm, .. }) => imm.bits(),
+            _ => return value,
+        };
+        self.integer(types::I32, bits.into())
+    }
+
+    /// The flags of a load.
+    pub(crate) fn reading(&mut self, from: Address) -> MemFlagsData {
+        if matches!(from.kind, Kind::Any) {
+            self.read_any();
+        }
+        self.flags(from)
+    }
+
+    /// The flags of a store.
+    pub(crate) fn writing(&mut self, to: Address) -> MemFlagsData {
+        match to.kind {
+            Kind::Class(_) => self.known_in = None,
+            // The code generator takes it for a store to anything.
+            Kind::Any | Kind::Own => self.known_in = self.builder.current_block(),
+        }
+        self.flags(to)
+    }
+
+    fn flags(&mut self, of: Address) -> MemFlagsData {
+        match of.kind {
+            Kind::Class(class) => self.class_flags(class),
+            Kind::Any | Kind::Own => MemFlagsData::trusted(),
+        }
+    }
+
+    /// Of what is of a class.
+    pub(crate) fn class_flags(&mut self, class: Class) -> MemFlagsData {
+        let data = AliasRegionData { user_id: class.user_id(), description: Cow::Borrowed("") };
+        let region = self.builder.func.dfg.alias_regions.insert(data);
+        MemFlagsData::trusted().with_alias_region(Some(region))
+    }
+
+    /// Before what is read may be any variable: all stores so far are to be seen. The code generator takes it for granted
+    /// that a load of no class is of no variable that has one.
+    pub(crate) fn read_any(&mut self) {
+        let block = self.builder.current_block();
+        if self.known_in != block {
+            self.ins().sequence_point();
+            self.known_in = block;
+        }
     }
 
     /// Stores as many low bits of a wider value as `repr` has.
     pub(crate) fn store_low(&mut self, repr: Repr, value: clif::Value, to: Address) {
-        let (flags, displacement) = (MemFlagsData::trusted(), to.displacement());
+        let (flags, displacement) = (self.writing(to), to.displacement());
         match repr.size() {
             1 => self.ins().istore8(flags, value, to.base, displacement),
             2 => self.ins().istore16(flags, value, to.base, displacement),
@@ -89,6 +148,7 @@ impl Function<'_, '_> {
         if from.base == to.base && from.offset == to.offset {
             return;
         }
+        self.read_any();
         let (from, to) = (self.pointer(from), self.pointer(to));
         let (config, align) = (self.module.output.target_config(), align_of(shape));
         let flags = MemFlagsData::trusted();
@@ -126,7 +186,7 @@ impl Function<'_, '_> {
     /// Read-only bytes.
     pub(crate) fn data(&mut self, bytes: Vec<u8>) -> Address {
         let id = self.module.constant(bytes);
-        Address::at(self.data_pointer(id))
+        Address::own(self.data_pointer(id))
     }
 
     pub(crate) fn constant(&mut self, value: Value) -> clif::Value {

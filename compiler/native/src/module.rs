@@ -1,6 +1,7 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
 use crate::expectation::{Expectation, expectations};
+use crate::inline_routine::SmallRoutines;
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
@@ -42,6 +43,8 @@ pub(crate) struct ModuleEmitter<'p> {
     pub(crate) program: &'p Program,
     pub(crate) layout: Layout,
     effects: Vec<Effects>,
+    /// The body of the PROGRAM that runs alone: its function is `staunch_scan`.
+    scanned: Option<RoutineId>,
     pub(crate) output: &'p mut dyn Module,
     functions: Vec<FuncId>,
     imports: HashMap<String, FuncId>,
@@ -54,6 +57,7 @@ pub(crate) struct ModuleEmitter<'p> {
     /// Where they lead, and what code compares them with, by the types that are looked for.
     targets: Option<Targets<'p>>,
     expectations: HashMap<Type, Vec<Expectation>>,
+    small: SmallRoutines,
     /// How much of the stack each function takes, in the order in which they are made.
     pub(crate) frames: Vec<u64>,
     /// The functions as text, where it is wanted.
@@ -67,11 +71,17 @@ pub(crate) struct Workspace {
 }
 
 impl<'p> ModuleEmitter<'p> {
-    pub(crate) fn new(program: &'p Program, effects: Vec<Effects>, output: &'p mut dyn Module) -> Self {
+    pub(crate) fn new(
+        program: &'p Program,
+        effects: Vec<Effects>,
+        scanned: Option<RoutineId>,
+        output: &'p mut dyn Module,
+    ) -> Self {
         Self {
             program,
             layout: Layout::new(program),
             handles_faults: program.handles_faults(),
+            scanned,
             effects,
             output,
             functions: Vec::with_capacity(program.routines.len()),
@@ -80,6 +90,7 @@ impl<'p> ModuleEmitter<'p> {
             references: None,
             targets: None,
             expectations: HashMap::new(),
+            small: SmallRoutines::default(),
             frames: Vec::with_capacity(program.routines.len()),
             listing: None,
         }
@@ -90,7 +101,11 @@ impl<'p> ModuleEmitter<'p> {
         for (at, routine) in program.routines.iter().enumerate() {
             let id = RoutineId::next(at);
             let signature = self.signature(id);
-            let function = self.output.declare_function(&symbol(id, routine), Linkage::Local, &signature)?;
+            let (name, linkage) = match self.is_scanned(id) {
+                true => (signature::SCAN.to_owned(), Linkage::Export),
+                false => (symbol(id, routine), Linkage::Local),
+            };
+            let function = self.output.declare_function(&name, linkage, &signature)?;
             self.functions.push(function);
         }
         Ok(())
@@ -98,8 +113,22 @@ impl<'p> ModuleEmitter<'p> {
 
     pub(crate) fn signature(&self, id: RoutineId) -> Signature {
         let mut signature = self.output.make_signature();
+        if self.is_scanned(id) {
+            signature::of_scan(&mut signature);
+            return signature;
+        }
         signature::of_routine(self.program, self.program.routine(id), self.effects(id), &mut signature);
         signature
+    }
+
+    /// Whether a routine's function is `staunch_scan`.
+    pub(crate) fn is_scanned(&self, id: RoutineId) -> bool {
+        self.scanned == Some(id)
+    }
+
+    /// The function `staunch_scan`, if it is a routine's.
+    pub(crate) fn scan(&self) -> Option<FuncId> {
+        self.scanned.map(|id| self.function(id))
     }
 
     pub(crate) fn effects(&self, id: RoutineId) -> &Effects {
@@ -189,6 +218,9 @@ impl<'p> ModuleEmitter<'p> {
             let text = context.func.display();
             writeln!(listing, "; {name}\n{text}").expect("writing to a String does not fail");
         }
+        let inlined = context.inline(self.small.inliner(context.func.dfg.num_insts()));
+        inlined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })?;
+        self.small.note(id, &context.func);
         let defined = if context.func.dfg.num_insts() > LARGE {
             self.define_plainly(context, id)
         } else {

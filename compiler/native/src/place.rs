@@ -1,17 +1,31 @@
 //! Places: where a variable, a field or an element is.
 
-use crate::address::Address;
+use crate::address::{Address, Class, Kind};
 use crate::function::{Function, LocalSlot};
-use cranelift_codegen::ir::{InstBuilder, condcodes::IntCC};
+use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
 use cranelift_frontend::Variable;
-use staunch_ir::loops::{Known, constant_position};
-use staunch_ir::{ArrayId, Expr, FaultKind, LocalId, Location, Place, Projection, Root, Type};
+use staunch_ir::loops::constant_position;
+use staunch_ir::{ArrayId, Expr, FaultKind, FieldId, Location, Place, Projection, Root, Type};
 
 /// Where the value of a place is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum PlaceValue {
     Variable(Variable),
     Memory(Address),
+}
+
+/// Of a member's storage.
+fn class(of: Type, field: FieldId) -> Kind {
+    match of {
+        Type::Struct(id) => Kind::Class(Class::of_field(id, field)),
+        Type::Block(id) => Kind::Class(Class::of_pin(id.info(), field.index())),
+        Type::Elementary(_)
+        | Type::Reference(_)
+        | Type::Subrange(..)
+        | Type::String(_)
+        | Type::Enum(_)
+        | Type::Array(_) => Kind::Any,
+    }
 }
 
 impl Function<'_, '_> {
@@ -38,7 +52,8 @@ impl Function<'_, '_> {
                 Projection::Field(field) => {
                     let member = self.module.program.member(ty, *field);
                     let offset = self.module.layout.offset(ty, *field);
-                    (address.plus(offset), member.expect("verified IR: a member of the type"))
+                    let address = Address { kind: class(ty, *field), ..address.plus(offset) };
+                    (address, member.expect("verified IR: a member of the type"))
                 }
                 Projection::Deref { .. } => unreachable!("a place that leads through no reference"),
                 Projection::Index { index, at } => {
@@ -68,17 +83,30 @@ impl Function<'_, '_> {
             return array.plus(position * stride);
         }
         let bounds = program.array(id);
-        let checked = |id: LocalId| self.checked[id.index()];
-        let known = Known { program, loops: &self.counters, checked: &checked };
-        let needs_check = !known.is_within(index, id);
-        let index = self.scalar(index);
-        // Below the lower bound the difference wraps, and is too large as well.
-        let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
+        let needs_check = !self.known(&|known| known.is_within(index, id));
+        let index = self.index(index);
         if needs_check {
+            // Below the lower bound the difference wraps, and is too large as well.
+            let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
             let last = bounds.high.abs_diff(bounds.low).cast_signed();
-            let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
-            self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+            if !self.seen.has(self.builder.current_block(), (index, id)) {
+                let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
+                self.fault_if(outside, FaultKind::IndexOutOfRange, at);
+                self.seen.note(self.builder.current_block(), (index, id));
+            }
+            return self.element_at(array, position, stride);
         }
+        // So far behind, at most, that it is no further than the array is long.
+        match self.sum(index, bounds.high.abs_diff(bounds.low)) {
+            (None, index) => array.plus(index.abs_diff(bounds.low) * stride),
+            (Some(index), further) => {
+                let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
+                self.element_at(array.plus(further.unsigned_abs() * stride), position, stride)
+            }
+        }
+    }
+
+    fn element_at(&mut self, array: Address, position: clif::Value, stride: u64) -> Address {
         let stride = i64::try_from(stride).expect("verified IR: sizes are within 1 GiB");
         let distance = self.ins().imul_imm_s(position, stride);
         let base = self.ins().iadd(array.base, distance);

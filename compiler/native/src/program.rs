@@ -2,7 +2,7 @@
 
 use crate::entry::EntryPoints;
 use crate::module::{ModuleEmitter, Workspace};
-use crate::{Error, entry, function, inline_block, inline_op};
+use crate::{Error, entry, function, inline_block, inline_op, scan};
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::Module;
 use staunch_ir::effects::{Rules, effects};
@@ -12,7 +12,10 @@ use staunch_ir::{Expr, ExprKind, Program, RoutineId, Statement, StatementKind, T
 
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
-    block_takes_context: |block, instruction| inline_block::find(block, instruction).is_none(),
+    block_takes_context: |block, instruction| {
+        let is_called = inline_block::find(block, instruction).is_none();
+        is_called || inline_block::block_info(block).instructions[instruction].needs_context
+    },
     operation_faults: code_faults,
     drops_checks: true,
     scans_take_all: false,
@@ -31,7 +34,9 @@ pub(crate) struct Emitted {
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
     let program = &promoted(program, Gain { suits: &is_in_line, of_reads: false });
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
-    let mut module = ModuleEmitter::new(program, effects(program, &RULES), output);
+    let effects = effects(program, &RULES);
+    let scanned = scan::scanned(program, &effects);
+    let mut module = ModuleEmitter::new(program, effects, scanned, output);
     module.listing = listing;
     module.declare()?;
     for at in 0..program.routines.len() {

@@ -12,6 +12,8 @@ use target_lexicon::{Architecture, Triple};
 
 /// All targets are 64-bit.
 pub(crate) const POINTER: Clif = types::I64;
+/// The symbol of the scan.
+pub(crate) const SCAN: &str = "staunch_scan";
 /// A fault's code.
 pub(crate) const CODE: Clif = types::I64;
 
@@ -44,6 +46,12 @@ pub(crate) fn of_routine(program: &Program, routine: &Routine, effects: &Effects
         Some(None) => signature.params.push(AbiParam::new(POINTER)),
         None => {}
     }
+}
+
+/// Fills the signature of `staunch_scan`.
+pub(crate) fn of_scan(signature: &mut Signature) {
+    signature.params.extend([POINTER, POINTER, types::I32].map(AbiParam::new));
+    signature.returns.push(AbiParam::new(CODE));
 }
 
 pub(crate) fn param_type(program: &Program, ty: Type, mode: Mode) -> Clif {

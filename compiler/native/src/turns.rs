@@ -3,6 +3,7 @@
 //! handles faults the context alone has it.
 //! A loop whose bounds say how many it has takes them all before the first one, or none where they are few.
 
+use crate::address::Class;
 use crate::function::{Few, Flow, Function};
 use cranelift_codegen::ir as clif;
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, condcodes::IntCC, types};
@@ -71,14 +72,20 @@ impl<'p> Function<'_, 'p> {
         let Some(variable) = self.turns else { return };
         let (context, offset) = self.turns_place();
         let left = self.builder.use_var(variable);
-        self.ins().store(MemFlagsData::trusted(), left, context, offset);
+        let flags = self.of_turns();
+        self.ins().store(flags, left, context, offset);
     }
 
     pub(crate) fn reload_turns(&mut self) {
         let Some(variable) = self.turns else { return };
         let (context, offset) = self.turns_place();
-        let left = self.ins().load(types::I64, MemFlagsData::trusted(), context, offset);
+        let flags = self.of_turns();
+        let left = self.ins().load(types::I64, flags, context, offset);
         self.builder.def_var(variable, left);
+    }
+
+    fn of_turns(&mut self) -> MemFlagsData {
+        self.class_flags(Class::TURNS)
     }
 
     fn turns_place(&self) -> (clif::Value, i32) {
@@ -224,7 +231,8 @@ impl<'p> Function<'_, 'p> {
             return self.builder.use_var(variable);
         }
         let (context, offset) = self.turns_place();
-        self.ins().load(types::I64, MemFlagsData::trusted(), context, offset)
+        let flags = self.of_turns();
+        self.ins().load(types::I64, flags, context, offset)
     }
 
     fn set_turns_left(&mut self, left: clif::Value) {
@@ -232,7 +240,8 @@ impl<'p> Function<'_, 'p> {
             return self.builder.def_var(variable, left);
         }
         let (context, offset) = self.turns_place();
-        self.ins().store(MemFlagsData::trusted(), left, context, offset);
+        let flags = self.of_turns();
+        self.ins().store(flags, left, context, offset);
     }
 
     /// RETURN leaves all loops.

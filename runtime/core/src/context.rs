@@ -45,6 +45,9 @@ impl Context {
     /// Where native code finds the turns that are left: a `u64`.
     pub const TURNS_OFFSET: usize = core::mem::offset_of!(Self, turns);
 
+    /// Where native code finds the scan's time: an `i64`.
+    pub const NOW_OFFSET: usize = core::mem::offset_of!(Self, now);
+
     /// A scan at `now` nanoseconds.
     pub const fn new(now: Time, first_scan: bool) -> Self {
         Self {

@@ -70,7 +70,7 @@ fn ranges_hold_for_every_value() {
                 while if step > 0 { x <= last } else { x >= last } {
                     for y in -2..=3_i16 {
                         let y = right.as_const().unwrap_or(Value::I16(y));
-                        if let Some(Ok(found)) = apply(op, crate::Repr::I16, &[Value::I16(x), y]) {
+                        if let Some(Ok(found)) = apply(op, Repr::I16, &[Value::I16(x), y]) {
                             let found = found.as_integer().unwrap();
                             assert!(
                                 (least..=most).contains(&found),
@@ -107,6 +107,30 @@ fn ranges_are_as_narrow_as_they_can_be() {
     assert_eq!(range(0, i16::MAX - 1, Op::Add, int(1)), (1, most));
     assert_eq!(range(i16::MIN + 1, 0, Op::Sub, int(1)), (least, -1));
     assert_eq!(range(i16::MIN, 0, Op::Sub, int(1)), (least, most));
+}
+
+/// Where the inner loop starts and ends follows from what the outer counter may be, and not the other way round.
+#[test]
+fn an_inner_counter_is_bounded_by_the_loops_around() {
+    let program = sample(Vec::new());
+    let (outer, inner) = (temp(), crate::fixture::limit());
+    let around = counted(outer.clone(), 0, 6, 1);
+    let rest = Expr::apply(Op::Sub, Type::INT, vec![int(6), load(outer.clone())], AT);
+    let range = |it: For, loops_around: &[&For]| {
+        let loops: Vec<_> = loops_around.iter().copied().chain([&it]).collect();
+        Known { program: &program, loops: &loops, checked: &|_| false }.range(&load(inner.clone())).unwrap()
+    };
+    let up = || For { last: rest.clone(), ..counted(inner.clone(), 0, 0, 1) };
+    assert_eq!(range(up(), &[&around]), (0, 6));
+    assert_eq!(range(up(), &[]), (0, i16::MAX.into()), "the outer variable may be anything");
+    let down = For { first: rest.clone(), ..counted(inner.clone(), 0, 0, -1) };
+    assert_eq!(range(down, &[&around]), (0, 6));
+    let beyond = Expr::apply(Op::Add, Type::INT, vec![int(i16::MAX), load(outer.clone())], AT);
+    let wraps = For { last: beyond, ..counted(inner.clone(), 0, 0, 1) };
+    assert_eq!(range(wraps, &[&around]), (0, i16::MAX.into()));
+    let next = |limit: i16| Expr::apply(Op::Add, Type::INT, vec![load(outer.clone()), int(limit)], AT);
+    let known = Known { program: &program, loops: &[&around], checked: &|_| false };
+    assert!(known.is_exact(&next(i16::MAX - 6)) && !known.is_exact(&next(i16::MAX - 5)));
 }
 
 #[test]
