@@ -70,6 +70,7 @@ fn form(kind: &StatementKind) -> &'static str {
         StatementKind::Loop { .. } => "loop",
         StatementKind::For(_) => "for",
         StatementKind::Try { .. } => "try",
+        StatementKind::Finally { .. } => "finally",
         StatementKind::Turn => "turn",
         StatementKind::Exit => "exit",
         StatementKind::Continue => "continue",

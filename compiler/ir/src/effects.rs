@@ -174,6 +174,7 @@ impl<'a> Finder<'a> {
             | StatementKind::If { .. }
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }
+            | StatementKind::Finally { .. }
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return => {}

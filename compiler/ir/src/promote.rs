@@ -7,10 +7,10 @@
 //!                                        state.i := i; state.sum := sum
 //! ```
 //!
-//! It applies to a loop that cannot fault, calls no routine, takes no address and does not return: nobody sees the state
-//! before the loop has ended. A variable is taken if all that the loop touches is either this variable or, whatever indices
-//! and references are, another one. The counter of a loop that takes its turns before the first one stays where it is: a
-//! fault there shows the counter's first value.
+//! It applies to a loop that calls no routine, takes no address and does not return: nobody sees the state before the loop
+//! has ended. Where the loop can fault, the values are stored after a fault as well
+//! ([`Finally`](StatementKind::Finally)), so that the state is what it was when the loop faulted. A variable is taken if all
+//! that the loop touches is either this variable or, whatever indices and references are, another one.
 //!
 //! A back end then has the variables in registers, where it would have to store them in each turn, since an element of an
 //! array, or what a reference leads to, might be the same storage. That an index is within its bounds is also known more
@@ -27,7 +27,7 @@ use crate::loops::{checked_locals, privatise};
 use crate::visit::{self, Access, Rewrite};
 use crate::{
     Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
-    StatementKind, Taking, Type, Value,
+    StatementKind, Type, Value,
 };
 use local::{MOST_LOCALS, name};
 use read_once::read_once;
@@ -126,17 +126,24 @@ impl Promoter<'_> {
         let candidates = self.candidates(statement);
         let mut promoted = statement.clone();
         in_locals(&Frame::of(self.program, self.routine), &mut promoted, &candidates);
-        if !candidates.iter().any(|it| it.is_written) || self.faults(&promoted) {
+        if !candidates.iter().any(|it| it.is_written) {
             self.routine.locals.truncate(count);
             return false;
         }
         let at = statement.at;
-        for it in candidates.iter().filter(|it| !is_set_first(statement, &it.place)) {
-            block.push(Statement::assign(it.as_local(), Expr::load(it.place.clone(), at), at));
-        }
-        block.push(promoted);
-        for it in candidates.iter().filter(|it| it.is_written) {
-            block.push(Statement::assign(it.place.clone(), Expr::load(it.as_local(), at), at));
+        let faults = self.faults(&promoted);
+        // What is not loaded before must not be stored after a fault that comes before it is set.
+        let is_loaded = |it: &&Candidate| faults || !is_set_first(statement, &it.place);
+        let loaded = candidates.iter().filter(is_loaded);
+        block.extend(loaded.map(|it| Statement::assign(it.as_local(), Expr::load(it.place.clone(), at), at)));
+        let written = candidates.iter().filter(|it| it.is_written);
+        let last = written.map(|it| Statement::assign(it.place.clone(), Expr::load(it.as_local(), at), at));
+        if faults {
+            let kind = StatementKind::Finally { body: vec![promoted], last: last.collect() };
+            block.push(Statement::new(kind, at));
+        } else {
+            block.push(promoted);
+            block.extend(last);
         }
         true
     }
@@ -162,7 +169,7 @@ impl Promoter<'_> {
             let can_be = is_useful && !it.is_borrowed && self.is_scalar_variable(&it.place);
             let is_apart =
                 |(other, of): (usize, &Touch)| other == *at || alias(&frame, &of.place, &it.place) == Alias::No;
-            can_be && !is_counter_of_turns(statement, &it.place) && touched.iter().enumerate().all(is_apart)
+            can_be && touched.iter().enumerate().all(is_apart)
         };
         let taken: Vec<&Touch> = touched.iter().enumerate().filter(is_taken).map(|(_, it)| it).collect();
         let mut candidates = Vec::new();
@@ -204,17 +211,10 @@ impl Promoter<'_> {
         })
     }
 
-    /// Whether the loop can fault after it has begun, or before by what its head evaluates.
     fn faults(&self, statement: &Statement) -> bool {
-        let mut begun = statement.clone();
-        match &mut begun.kind {
-            StatementKind::For(it) => it.taking = Taking::Each,
-            StatementKind::Loop { count: Some(it), .. } => it.taking = Taking::Each,
-            _ => {}
-        }
         let mut checked = self.checked.clone();
         checked.resize(self.routine.locals.len(), false);
-        statement_faults(self.program, &RULES, self.routine, (self.around.iter().collect(), checked), &begun)
+        statement_faults(self.program, &RULES, self.routine, (self.around.iter().collect(), checked), statement)
     }
 }
 
@@ -264,22 +264,18 @@ fn is_plain(kind: &StatementKind) -> bool {
         | StatementKind::Case { .. }
         | StatementKind::Loop { .. }
         | StatementKind::For(_)
+        | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::CallBlock { .. } => true,
         StatementKind::Try { .. }
-        | StatementKind::Turn
+        | StatementKind::Finally { .. }
         | StatementKind::Return
         | StatementKind::Call { .. }
         | StatementKind::External(_)
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Fault(_) => false,
     }
-}
-
-/// Its counter, which a fault of taking turns shows at its first value.
-fn is_counter_of_turns(statement: &Statement, place: &Place) -> bool {
-    matches!(&statement.kind, StatementKind::For(it) if it.taking.is_ahead() && it.counter.is_same_variable(place))
 }
 
 fn private_head(statement: &Statement) -> Option<For> {

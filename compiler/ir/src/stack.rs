@@ -81,6 +81,7 @@ impl Taken<'_> {
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }
             | StatementKind::Try { .. }
+            | StatementKind::Finally { .. }
             | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue

@@ -48,6 +48,12 @@ pub enum StatementKind {
         kind: Place,
         handler: Block,
     },
+    /// Runs `body`, which control leaves at its end or by a fault; then `last` in either case: assignments that cannot fault. Only
+    /// [`promote`](mod@crate::promote) makes it.
+    Finally {
+        body: Block,
+        last: Block,
+    },
     /// Takes one of the turns that the loops of a scan have; faults when none is left.
     Turn,
     /// Leaves the innermost loop.
@@ -313,6 +319,7 @@ impl StatementKind {
             Self::Loop { body, continuing, count: _ } => vec![body, continuing],
             Self::For(it) => vec![&it.body],
             Self::Try { body, kind: _, handler } => vec![body, handler],
+            Self::Finally { body, last } => vec![body, last],
             Self::Assign { .. }
             | Self::Turn
             | Self::Exit
@@ -335,6 +342,7 @@ impl StatementKind {
             Self::Loop { body, continuing, count: _ } => vec![body, continuing],
             Self::For(it) => vec![&mut it.body],
             Self::Try { body, kind: _, handler } => vec![body, handler],
+            Self::Finally { body, last } => vec![body, last],
             Self::Assign { .. }
             | Self::Turn
             | Self::Exit

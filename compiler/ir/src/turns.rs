@@ -17,6 +17,7 @@ pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool)
         | StatementKind::If { .. }
         | StatementKind::Case { .. }
         | StatementKind::Try { .. }
+        | StatementKind::Finally { .. }
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return

@@ -68,7 +68,8 @@ fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
                 rewrite_expr(&mut it.bound, by);
             }
         }
-        StatementKind::Turn
+        StatementKind::Finally { .. }
+        | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
@@ -172,6 +173,7 @@ pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
             see(&it.counter, Access::Write);
         }
         StatementKind::Loop { .. }
+        | StatementKind::Finally { .. }
         | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
@@ -209,6 +211,7 @@ pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
         StatementKind::External(it) => it.arguments.iter().filter_map(Argument::value).for_each(see),
         StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(see),
         StatementKind::Loop { .. }
+        | StatementKind::Finally { .. }
         | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
@@ -260,6 +263,7 @@ pub fn targets<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Place)) {
         StatementKind::If { .. }
         | StatementKind::Case { .. }
         | StatementKind::Loop { .. }
+        | StatementKind::Finally { .. }
         | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue

@@ -32,6 +32,53 @@ impl<'p> Function<'_, 'p> {
         self.join(&flow, after)
     }
 
+    /// Statements after which `last` comes in any case.
+    pub(crate) fn finally(&mut self, body: &'p Block, last: &'p Block) -> Flow {
+        self.endings += 1;
+        let run = &mut |this: &mut Self| this.block(body);
+        let flow = self.before_faults_pass(run, &mut |this| {
+            this.block(last);
+        });
+        self.endings -= 1;
+        if flow == Flow::Continues {
+            self.block(last);
+        }
+        flow
+    }
+
+    /// What `run` emits, whose faults lead to what `end` emits, and on from there.
+    pub(crate) fn before_faults_pass(
+        &mut self,
+        run: &mut dyn FnMut(&mut Self) -> Flow,
+        end: &mut dyn FnMut(&mut Self),
+    ) -> Flow {
+        let [faulted, after] = [(); 2].map(|()| self.builder.create_block());
+        self.builder.set_cold_block(faulted);
+        let around = core::mem::take(&mut self.faults);
+        let flow = run(self);
+        if flow == Flow::Continues {
+            self.ins().jump(after, &[]);
+        }
+        let mut is_reached = false;
+        self.builder.append_block_param(faulted, CODE);
+        self.end_faults(&mut |this, code| {
+            is_reached = true;
+            this.ins().jump(faulted, &[BlockArg::Value(code)]);
+        });
+        self.faults = around;
+        if is_reached {
+            self.go_on_in(faulted);
+            let code = self.builder.block_params(faulted)[0];
+            end(self);
+            let passing = self.passing_block();
+            self.ins().jump(passing, &[BlockArg::Value(code)]);
+        }
+        if flow == Flow::Continues {
+            self.go_on_in(after);
+        }
+        flow
+    }
+
     fn handle(&mut self, caught: clif::Block, kind: &Place, handler: &'p Block) -> Flow {
         let code = self.builder.block_params(caught)[0];
         let number = self.ins().ireduce(types::I8, code);

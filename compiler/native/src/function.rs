@@ -37,6 +37,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) copied: usize,
     /// Operations of unrolled loops so far.
     pub(crate) unrolled: usize,
+    /// How many [`Finally`](staunch_ir::StatementKind::Finally) are around: what they store after a fault reads locals.
+    pub(crate) endings: usize,
     /// The FOR loops among them whose counters are in registers.
     pub(crate) counters: Vec<&'p For>,
     /// One for each of `counters`: its value, extended to 64 bits.
@@ -168,6 +170,7 @@ impl<'a, 'p> Function<'a, 'p> {
             seen: Seen::default(),
             copied: 0,
             unrolled: 0,
+            endings: 0,
             counters: Vec::new(),
             registers: Vec::new(),
             checked: effects.checked.clone(),

@@ -34,20 +34,31 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let flow = match self.unrolling(it) {
-            Some(unrolling) => self.turns_in_line(&running, unrolling),
-            None => self.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]),
+        let run = &mut |this: &mut Self| match this.unrolling(it) {
+            Some(unrolling) => this.turns_in_line(&running, unrolling),
+            None => this.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]),
         };
-        if let Some(register) = running.register {
+        let flow = match running.late {
+            Some(_) if self.endings > 0 => self.before_faults_pass(run, &mut |this| this.set_late(&running)),
+            Some(_) | None => run(self),
+        };
+        if running.register.is_some() {
             self.registers.pop();
             self.counters.pop();
-            if let Some(late) = running.late.filter(|_| flow == Flow::Continues) {
-                let counter = self.builder.use_var(register);
-                let counter = self.narrowed(running.repr, counter);
-                self.builder.def_var(late, counter);
+            if flow == Flow::Continues {
+                self.set_late(&running);
             }
         }
         self.close_turns(opens, flow)
+    }
+
+    /// Gives the counter's variable what its register has.
+    fn set_late(&mut self, running: &Running<'p>) {
+        if let (Some(late), Some(register)) = (running.late, running.register) {
+            let counter = self.builder.use_var(register);
+            let counter = self.narrowed(running.repr, counter);
+            self.builder.def_var(late, counter);
+        }
     }
 
     fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {

@@ -30,6 +30,7 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Loop { body, continuing, count } => return self.turns(body, continuing, count.as_deref()),
             StatementKind::For(it) => return self.for_loop(it, statement.at),
             StatementKind::Try { body, kind, handler } => return self.attempt(body, kind, handler),
+            StatementKind::Finally { body, last } => return self.finally(body, last),
             StatementKind::Turn => self.take_turn(statement.at),
             StatementKind::Exit => return self.leave_loop(),
             StatementKind::Continue => return self.continue_loop(),

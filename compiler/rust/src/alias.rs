@@ -246,6 +246,9 @@ impl Separator<'_> {
                 kind: body.place(kind),
                 handler: self.block(body, handler),
             },
+            StatementKind::Finally { body: inner, last } => {
+                StatementKind::Finally { body: self.block(body, inner), last: self.block(body, last) }
+            }
             StatementKind::Turn => StatementKind::Turn,
             StatementKind::Call { callee, instance, arguments, result } => {
                 let instance = instance.as_ref().map(|it| body.place(it));

@@ -43,6 +43,18 @@ impl Function<'_> {
         }
     }
 
+    /// Statements after which `last` comes in any case: a closure, whose `?` ends it.
+    pub fn finally(&mut self, body: &Block, last: &Block) -> TokenStream {
+        let around = std::mem::take(&mut self.loops.around);
+        self.endings += 1;
+        let inside = self.statements(body);
+        self.endings -= 1;
+        self.loops.around = around;
+        let ended = self.made_up("ended", self.endings);
+        let last = self.statements(last);
+        quote!(let #ended = exception::attempt(|| { #inside Ok(()) }); #last #ended?;)
+    }
+
     /// The number of what is caught, where the handler asks for it.
     fn kind(&self, statement: &Statement, kind: &Place, fault: &Ident) -> TokenStream {
         let number = quote!(#fault.caught()?);

@@ -25,6 +25,8 @@ pub struct Function<'a> {
     pub loops: Loops,
     /// How many closures of statements whose faults are handled are around.
     pub attempts: usize,
+    /// How many closures of statements after which others come in any case are around.
+    pub endings: usize,
     /// Variables that the loops around have copied, innermost last.
     pub counters: Vec<(Place, Ident)>,
     /// The names of those copies, by what they copy.
@@ -100,6 +102,7 @@ impl<'a> Emitter<'a> {
             faults,
             loops: Loops::default(),
             attempts: 0,
+            endings: 0,
             counters: Vec::new(),
             counter_names: HashMap::new(),
             hoisted_indices: Vec::new(),

@@ -81,6 +81,7 @@ impl Function<'_> {
                 self.loops.few.as_ref().map_or_else(|| take.clone(), |few| quote!(if !#few { #take }))
             }
             StatementKind::Try { body, kind, handler } => self.attempt(statement, body, kind, handler),
+            StatementKind::Finally { body, last } => self.finally(body, last),
             StatementKind::Exit => self.leave(),
             StatementKind::Continue => self.next(),
             StatementKind::Return => self.return_from_body(),

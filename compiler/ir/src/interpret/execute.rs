@@ -45,6 +45,7 @@ impl<'p> Interpreter<'p> {
             }
             StatementKind::For(it) => return self.for_loop(frame, it, statement.at, cx),
             StatementKind::Try { body, kind, handler } => return self.attempt(frame, body, (kind, handler), cx),
+            StatementKind::Finally { body, last } => return self.finally(frame, body, last, cx),
             StatementKind::Turn if self.has_few_turns => {}
             StatementKind::Turn => cx.take_turn().map_err(|kind| Fault { kind, at: statement.at })?,
             StatementKind::Exit => return Ok(Flow::Exit),
@@ -94,6 +95,19 @@ impl<'p> Interpreter<'p> {
         let offset = self.resolve(frame, kind)?;
         Value::U8(number).write(&mut self.memory[offset..]);
         self.block(frame, handler, cx)
+    }
+
+    /// `last` runs however `body` ends.
+    fn finally(
+        &mut self,
+        frame: &Frame,
+        body: &'p [Statement],
+        last: &'p [Statement],
+        cx: &Context,
+    ) -> Result<Flow, Stop> {
+        let ended = self.block(frame, body, cx);
+        self.block(frame, last, cx)?;
+        ended
     }
 
     pub(super) fn step(&mut self) -> Result<(), Stop> {

@@ -38,6 +38,11 @@ impl Printer<'_> {
                 self.line(format_args!("caught"))?;
                 self.block(routine, handler)
             }
+            StatementKind::Finally { body, last } => {
+                self.block(routine, body)?;
+                self.line(format_args!("last"))?;
+                self.block(routine, last)
+            }
             StatementKind::Assign { .. }
             | StatementKind::Turn
             | StatementKind::Exit
@@ -77,6 +82,7 @@ impl Printer<'_> {
             StatementKind::Loop { count: Some(it), .. } => self.count(routine, it),
             StatementKind::For(it) => self.for_head(routine, it),
             StatementKind::Try { kind, .. } => format!("try {}", self.place(routine, kind)),
+            StatementKind::Finally { .. } => "finally".to_owned(),
             StatementKind::Turn => "turn".to_owned(),
             StatementKind::Exit => "exit".to_owned(),
             StatementKind::Continue => "continue".to_owned(),

@@ -61,6 +61,7 @@ fn kinds(program: &Program) -> Vec<&'static str> {
         StatementKind::Assign { .. } => "store",
         StatementKind::For(it) if matches!(it.counter.root, Root::Local(_)) => "for of a local",
         StatementKind::For(_) => "for",
+        StatementKind::Finally { .. } => "finally",
         _ => "other",
     };
     program.routines[MAIN].body.iter().map(name).collect()
@@ -76,13 +77,15 @@ fn a_counter_and_a_sum_are_in_locals() {
 }
 
 #[test]
-fn a_loop_that_can_fault_stays() {
+fn a_loop_that_can_fault_stores_after_that_too() {
     let outside = pass(vec![count_to(4, vec![assign(element(count()), int(7))])]);
-    assert_eq!(kinds(&outside), ["for"]);
+    assert_eq!(kinds(&outside), ["load", "finally"], "the counter");
     let unknown = pass(vec![count_to(3, vec![assign(element(wide()), int(7)), step_total()])]);
-    assert_eq!(kinds(&unknown), ["for"]);
+    assert_eq!(kinds(&unknown), ["load", "load", "load", "finally"], "what is only read as well");
     let takes_turns = pass(vec![count_to(30000, vec![step_total()])]);
-    assert_eq!(kinds(&takes_turns), ["for"]);
+    assert_eq!(kinds(&takes_turns), ["load", "load", "finally"]);
+    let StatementKind::Finally { body, last } = &takes_turns.routines[MAIN].body[2].kind else { panic!("it is one") };
+    assert_eq!((body.len(), last.len()), (1, 2));
 }
 
 #[test]

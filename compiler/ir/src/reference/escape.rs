@@ -58,6 +58,7 @@ pub fn moves_references(program: &Program, statement: &StatementKind) -> bool {
         | StatementKind::Loop { .. }
         | StatementKind::For(_)
         | StatementKind::Try { .. }
+        | StatementKind::Finally { .. }
         | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
@@ -151,6 +152,7 @@ impl<'p> Finder<'p> {
             | StatementKind::Loop { .. }
             | StatementKind::For(_)
         | StatementKind::Try { .. }
+        | StatementKind::Finally { .. }
             | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue

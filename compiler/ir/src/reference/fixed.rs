@@ -159,7 +159,8 @@ impl Mover<'_> {
                 self.place(place)
             }
             StatementKind::Loop { body, .. } => self.take_turns(body, new.at),
-            StatementKind::Turn
+            StatementKind::Finally { .. }
+            | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return

@@ -22,6 +22,7 @@ pub(super) fn size(block: &[Statement]) -> usize {
             StatementKind::Assign { .. }
             | StatementKind::If { .. }
             | StatementKind::Case { .. }
+            | StatementKind::Finally { .. }
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return

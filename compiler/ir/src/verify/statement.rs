@@ -3,10 +3,10 @@
 use super::Verifier;
 use crate::alias::Frame;
 use crate::{
-    Argument, Arm, Block, ClassKind, Elementary, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place, Root,
-    Routine, RoutineId, Statement, StatementKind, Step, Type,
+    Argument, Arm, Block, ClassKind, Elementary, Expr, ExprKind, ExternalCall, For, Location, Mode, Param, Place,
+    Projection, Root, Routine, RoutineId, Statement, StatementKind, Step, Type,
 };
-use crate::{loops, taking, turns};
+use crate::{faults, loops, taking, turns, visit};
 use staunch_runtime::BlockInfo;
 
 /// The block that is being checked, and where in it.
@@ -98,6 +98,7 @@ impl<'p> Verifier<'p> {
                 self.block(body, block);
                 self.block(body, handler);
             }
+            StatementKind::Finally { body: block, last } => self.finally(body, block, last, at),
             StatementKind::Exit => {
                 self.require(body.in_loop, at, "EXIT outside of a loop");
             }
@@ -118,6 +119,23 @@ impl<'p> Verifier<'p> {
                 self.prescan_block(body, block, *instruction, at);
             }
         }
+    }
+
+    fn finally(&mut self, body: &Body<'p>, block: &Block, last: &Block, at: Location) {
+        let inside = Body { in_loop: false, in_continuing: false, ..*body };
+        self.block(&inside, block);
+        self.block(&inside, last);
+        let mut returns = false;
+        visit::statements(block, &mut |it| returns |= matches!(it.kind, StatementKind::Return));
+        self.require(!returns, at, "RETURN where something is left to do");
+        let faults = |it: &Projection| faults::projection_faults(self.program, it);
+        let is_plain = last.iter().all(|it| match &it.kind {
+            StatementKind::Assign { target, value } => {
+                !target.projections.iter().any(faults) && !faults::expr_faults(self.program, value)
+            }
+            _ => false,
+        });
+        self.require(is_plain, at, "what may fault where something is left to do");
     }
 
     fn for_loop(&mut self, body: &Body<'p>, it: &For, at: Location) {

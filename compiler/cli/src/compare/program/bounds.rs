@@ -101,6 +101,7 @@ impl Walk<'_> {
             | StatementKind::External(_)
             | StatementKind::PrescanBlock { .. }
             | StatementKind::Try { .. }
+            | StatementKind::Finally { .. }
             | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue

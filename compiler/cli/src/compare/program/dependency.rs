@@ -148,7 +148,8 @@ impl Walk<'_, '_> {
                 });
                 self.write(kind, &[Node::Run(self.id)]);
             }
-            StatementKind::Assign { .. }
+            StatementKind::Finally { .. }
+            | StatementKind::Assign { .. }
             | StatementKind::If { .. }
             | StatementKind::Case { .. }
             | StatementKind::Loop { .. }

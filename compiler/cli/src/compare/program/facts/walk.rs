@@ -91,6 +91,7 @@ impl<'p> Walk<'p, '_> {
             StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(|it| self.expr(it)),
             StatementKind::Loop { .. }
             | StatementKind::Try { .. }
+            | StatementKind::Finally { .. }
             | StatementKind::Turn
             | StatementKind::Exit
             | StatementKind::Continue
