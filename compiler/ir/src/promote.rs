@@ -45,11 +45,14 @@ pub struct Gain<'a> {
     pub suits: &'a dyn Fn(&Statement) -> bool,
     /// Whether variables are taken that the loop only reads, while it stores elements of arrays.
     pub of_reads: bool,
+    /// Whether a loop is taken that can fault and stores no element of an array, nor behind a reference: where the back end itself
+    /// keeps variables in registers up to a fault, more of them only have to be moved there.
+    pub of_scalars: bool,
 }
 
 impl Gain<'_> {
     /// Of all that can be.
-    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true };
+    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false };
 }
 
 /// The program with such loops.
@@ -132,6 +135,10 @@ impl Promoter<'_> {
         }
         let at = statement.at;
         let faults = self.faults(&promoted);
+        if faults && !self.gain.of_scalars && !stores_element(statement) {
+            self.routine.locals.truncate(count);
+            return false;
+        }
         // What is not loaded before must not be stored after a fault that comes before it is set.
         let is_loaded = |it: &&Candidate| faults || !is_set_first(statement, &it.place);
         let loaded = candidates.iter().filter(is_loaded);
@@ -161,8 +168,7 @@ impl Promoter<'_> {
     /// The variables that the loop touches and nothing else in it can be, each with a local of its own.
     fn candidates(&mut self, statement: &Statement) -> Vec<Candidate> {
         let Some(Touched(touched)) = Touched::by(statement) else { return Vec::new() };
-        let stores_element = |it: &Touch| it.is_changed() && it.place.indices().next().is_some();
-        let takes_reads = self.gain.of_reads && touched.iter().any(stores_element);
+        let takes_reads = self.gain.of_reads && stores_element(statement);
         let frame = Frame::of(self.program, self.routine);
         let is_taken = |(at, it): &(usize, &Touch)| {
             let is_useful = it.is_written || takes_reads && !self.is_counter_around(&it.place);
@@ -240,12 +246,6 @@ impl Touched {
     }
 }
 
-impl Touch {
-    fn is_changed(&self) -> bool {
-        self.is_written || self.is_borrowed
-    }
-}
-
 impl Candidate {
     fn as_local(&self) -> Place {
         Place::local(self.local, self.place.ty)
@@ -254,6 +254,16 @@ impl Candidate {
 
 fn is_loop(statement: &Statement) -> bool {
     matches!(statement.kind, StatementKind::For(_) | StatementKind::Loop { .. })
+}
+
+/// Whether an element of an array is stored or handed on, or what a reference leads to.
+fn stores_element(statement: &Statement) -> bool {
+    let mut found = false;
+    let is_named = |it: &Place| it.projections.iter().all(|it| matches!(it, Projection::Field(_)));
+    visit::statements(std::slice::from_ref(statement), &mut |it| {
+        visit::accesses(it, &mut |place, access| found |= access != Access::Read && !is_named(place));
+    });
+    found
 }
 
 /// Whether a statement runs nothing that is elsewhere, and leaves no more than a loop.

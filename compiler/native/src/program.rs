@@ -32,7 +32,7 @@ pub(crate) struct Emitted {
 
 /// Puts a whole program into `output`; a listing is added to where one is wanted.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
-    let program = &promoted(program, Gain { suits: &is_in_line, of_reads: false });
+    let program = &promoted(program, Gain { suits: &is_in_line, of_reads: false, of_scalars: true });
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
     let effects = effects(program, &RULES);
     let scanned = scan::scanned(program, &effects);
