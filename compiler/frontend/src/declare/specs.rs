@@ -291,7 +291,8 @@ impl<'s> Declarations<'s> {
 
     fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
         if let Some(elementary) = Elementary::named(name.text) {
-            return Some(Resolved::plain(Type::Elementary(elementary)));
+            let initial = scalar_initial(self.dialect(name.span).rules().first_value(elementary));
+            return Some(Resolved { ty: Type::Elementary(elementary), initial });
         }
         match self.lookup(&[name], Sense::Type) {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),

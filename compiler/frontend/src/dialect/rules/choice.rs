@@ -251,7 +251,7 @@ impl Choice for DateAsNumber {
     fn words(self) -> &'static str {
         match self {
             Self::SecondsSince1970 => "seconds since 1970-01-01",
-            Self::DaysSince1990 => "days since 1990-01-01",
+            Self::DaysSince1990 => "days since 1990-01-01, where a DATE or DT starts",
             Self::AsStored => "days since 1970-01-01; a TOD or DT is of nanoseconds, and becomes milliseconds",
         }
     }

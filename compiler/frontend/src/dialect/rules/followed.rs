@@ -5,6 +5,7 @@ use super::choice::{
     LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
     RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
 };
+use staunch_runtime::{Elementary, Value};
 
 /// How one dialect computes.
 #[derive(Debug)]
@@ -38,6 +39,15 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// What a variable of the type starts with where nothing says it: a date that is a number of days is the first day.
+    pub fn first_value(&self, ty: Elementary) -> Value {
+        let counts_days = self.date_as_number.choice == DateAsNumber::DaysSince1990;
+        match counts_days && matches!(ty, Elementary::Date | Elementary::Dt) {
+            true => Value::I64(staunch_runtime::time::date(1990, 1, 1)),
+            false => ty.repr().zero(),
+        }
+    }
+
     /// Two numbers of different types are computed at the type that ranks higher.
     pub const fn ranks_numbers(&self) -> bool {
         matches!(self.mixed_numbers.choice, MixedNumbers::Ranked)
