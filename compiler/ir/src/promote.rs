@@ -45,8 +45,8 @@ pub struct Gain<'a> {
     pub suits: &'a dyn Fn(&Statement) -> bool,
     /// Whether variables are taken that the loop only reads, while it stores elements of arrays.
     pub of_reads: bool,
-    /// Whether a loop is taken that can fault and stores no element of an array, nor behind a reference: where the back end itself
-    /// keeps variables in registers up to a fault, more of them only have to be moved there.
+    /// Whether a WHILE or REPEAT is taken that can fault and stores no element of an array, nor behind a reference: where the
+    /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
 }
 
@@ -135,7 +135,8 @@ impl Promoter<'_> {
         }
         let at = statement.at;
         let faults = self.faults(&promoted);
-        if faults && !self.gain.of_scalars && !stores_element(statement) {
+        let is_for = matches!(statement.kind, StatementKind::For(_));
+        if faults && !is_for && !self.gain.of_scalars && !stores_element(statement) {
             self.routine.locals.truncate(count);
             return false;
         }

@@ -31,7 +31,7 @@
 
 use staunch_runtime::{Context, Fault, OrFault, Text};
 
-use staunch_runtime::{exception, firmware, iec, ops, strips, time};
+use staunch_runtime::{firmware, iec, ops, strips, time};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["statements.st"];
@@ -133,32 +133,22 @@ impl Main {
         }
         self.i = i;
         self.sum = sum;
-        let mut sum_2: i32 = self.sum; // :18
-        let ended = exception::attempt(|| {
-            strips!(32; while (sum_2 > 100) {
-                cx.take_turn().at(STATEMENTS_ST, 18, 1)?;
-                sum_2 = ops::div(sum_2, 2).at(STATEMENTS_ST, 18, 31)?;
-                if sum_2 == 60 {
-                    break;
-                }
-            });
-            Ok(())
+        strips!(32; while (self.sum > 100) {
+            // :18
+            cx.take_turn().at(STATEMENTS_ST, 18, 1)?;
+            self.sum = ops::div(self.sum, 2).at(STATEMENTS_ST, 18, 31)?;
+            if self.sum == 60 {
+                break;
+            }
         });
-        self.sum = sum_2;
-        ended?;
-        let mut sum_3: i32 = self.sum; // :19
-        let ended = exception::attempt(|| {
-            strips!(32; loop {
-                cx.take_turn().at(STATEMENTS_ST, 19, 1)?;
-                sum_3 = sum_3.wrapping_add(1);
-                if sum_3 > 3 {
-                    break;
-                }
-            });
-            Ok(())
+        strips!(32; loop {
+            // :19
+            cx.take_turn().at(STATEMENTS_ST, 19, 1)?;
+            self.sum = self.sum.wrapping_add(1);
+            if self.sum > 3 {
+                break;
+            }
         });
-        self.sum = sum_3;
-        ended?;
         let twice_2: i32 = twice(self.n, &mut half, &mut self.calls)?; // :20
         self.half = half;
         self.sum = self.sum.wrapping_add(twice_2.wrapping_mul(10));

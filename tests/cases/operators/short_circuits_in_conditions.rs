@@ -31,7 +31,7 @@
 
 use staunch_runtime::{Context, Fault, OrFault};
 
-use staunch_runtime::{exception, firmware, ops, strips};
+use staunch_runtime::{firmware, ops, strips};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["short_circuits_in_conditions.st"];
@@ -94,24 +94,19 @@ impl Main {
     #[rustfmt::skip]
     pub fn scan(&mut self, cx: &Context) -> Result<(), Fault> {
         self.place = 0; // :8
-        let mut place: i16 = self.place; // :9
-        let ended = exception::attempt(|| {
-            strips!(8; while (place < self.limit
-                && self
-                    .a[ops::index(i64::from(place), 0, 29)
-                    .at(SHORT_CIRCUITS_IN_CONDITIONS_ST, 9, 32)?] != self.wanted
-                && (self.fast
-                    || self
-                        .a[ops::index(i64::from(place), 0, 29)
-                        .at(SHORT_CIRCUITS_IN_CONDITIONS_ST, 9, 74)?] != 7))
-            {
-                cx.take_turn().at(SHORT_CIRCUITS_IN_CONDITIONS_ST, 9, 1)?;
-                place = place.wrapping_add(1); // :10
-            });
-            Ok(())
+        strips!(8; while (self.place < self.limit
+            && self
+                .a[ops::index(i64::from(self.place), 0, 29)
+                .at(SHORT_CIRCUITS_IN_CONDITIONS_ST, 9, 32)?] != self.wanted
+            && (self.fast
+                || self
+                    .a[ops::index(i64::from(self.place), 0, 29)
+                    .at(SHORT_CIRCUITS_IN_CONDITIONS_ST, 9, 74)?] != 7))
+        {
+            // :9
+            cx.take_turn().at(SHORT_CIRCUITS_IN_CONDITIONS_ST, 9, 1)?;
+            self.place = self.place.wrapping_add(1); // :10
         });
-        self.place = place; // :9
-        ended?;
         if self.place < 30
             && self
                 .a[ops::index(i64::from(self.place), 0, 29)

@@ -8,7 +8,7 @@ use crate::storage::Value;
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr};
-use staunch_runtime::{FaultKind, Value as Scalar};
+use staunch_runtime::{Family, FaultKind, Value as Scalar};
 
 use Elementary as E;
 
@@ -16,6 +16,9 @@ const SECOND: i128 = 1_000_000_000;
 const DAY: i128 = 86_400 * SECOND;
 /// Days of the months before each, in a year without a leap day.
 const BEFORE_MONTH: [i128; 12] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334];
+
+/// 1990-01-01: 20 years of 365 days and five leap days after 1970, in nanoseconds.
+pub(crate) const START_OF_S7: i64 = (20 * 365 + 5) * 86_400 * 1_000_000_000;
 
 impl Elementary {
     fn is_long(self) -> bool {
@@ -70,6 +73,9 @@ impl<'a> Machine<'a> {
             let [number, unit] = parts;
             return Ok(in_repr(self.applied("DIV", E::Lreal, &[number?, unit?], span)?.as_scalar()?, to));
         }
+        if self.declared.family == Family::S7 && (from == E::Date || to == E::Date) {
+            return self.days_of_s7(value, from, to);
+        }
         if temporal(from) {
             let count = value.as_integer()?.div_euclid(from.unit());
             if to == E::Bool {
@@ -81,6 +87,19 @@ impl<'a> Machine<'a> {
         let factor = in_repr(Scalar::I64(unit(to)), wide).as_scalar()?;
         let count = self.applied("MUL", wide, &[in_repr(value.as_scalar()?, wide).as_scalar()?, factor], span)?;
         at(to, i128::from(wrapped(in_repr(count.as_scalar()?, E::Lint).as_integer()?)))
+    }
+
+    /// A DATE of S7 as a number is the days since 1990-01-01 (S7-1200 System Manual, 11/2011, p. 89).
+    fn days_of_s7(&self, value: &Value<'a>, from: E, to: E) -> Outcome<Value<'a>> {
+        if from.is_real() || to.is_real() || to == E::Bool {
+            return unknown("a DATE of S7 as a REAL or a BOOL");
+        }
+        let number = value.as_integer()?;
+        if to == E::Date {
+            return at(to, i128::from(START_OF_S7) + number * DAY);
+        }
+        let days = (number - i128::from(START_OF_S7)).div_euclid(DAY);
+        Ok(in_repr(Scalar::I64(wrapped(days)), to))
     }
 
     /// `ADD_TOD_TIME`, `CONCAT_DATE`, `DAY_OF_WEEK`; `None` for another function.

@@ -1,8 +1,9 @@
 //! What variables start with: their initial values, or what their types say.
 
+use crate::dates::START_OF_S7;
 use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::storage::{Cell, Place, integer_cell};
-use crate::types::{Slot, Type};
+use crate::types::{Elementary, Slot, Type};
 use staunch_frontend::ast::{Initial, InitialKind};
 use staunch_runtime::{BlockInfo, Family, FaultKind, Value as Scalar};
 
@@ -90,7 +91,7 @@ impl<'a> Machine<'a> {
             return Ok(());
         }
         match &place.ty {
-            Type::Elementary(it) => self.memory[place.at] = Cell::Scalar(it.repr().zero()),
+            Type::Elementary(it) => self.memory[place.at] = Cell::Scalar(self.first_value(*it)),
             // Edition 2, 2.3.3.2: the leftmost value.
             Type::Subrange(base, low, _) => self.memory[place.at] = integer_cell(*base, *low),
             Type::Enum(it) => self.memory[place.at] = Cell::Scalar(it.values[0].1),
@@ -127,6 +128,14 @@ impl<'a> Machine<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Days and points in time of S7 start in 1990 (S7-1200 System Manual, 11/2011, p. 89).
+    fn first_value(&self, ty: Elementary) -> Scalar {
+        match ty {
+            Elementary::Date | Elementary::Dt if self.declared.family == Family::S7 => Scalar::I64(START_OF_S7),
+            _ => ty.repr().zero(),
+        }
     }
 
     /// A member of a UNION that starts as all zeros leaves the others as they start.

@@ -82,12 +82,18 @@ fn a_loop_that_can_fault_stores_after_that_too() {
     assert_eq!(kinds(&outside), ["load", "finally"], "the counter");
     let unknown = pass(vec![count_to(3, vec![assign(element(wide()), int(7)), step_total()])]);
     assert_eq!(kinds(&unknown), ["load", "load", "load", "finally"], "what is only read as well");
-    let takes_turns = sample(vec![count_to(30000, vec![step_total()])]);
-    assert_eq!(kinds(&promoted(&takes_turns, Gain::WHOLE)), ["for"], "nothing but scalars");
-    let of_scalars = promoted(&takes_turns, Gain { of_scalars: true, ..Gain::WHOLE });
-    assert_eq!(kinds(&of_scalars), ["load", "load", "finally"]);
-    let StatementKind::Finally { body, last } = &of_scalars.routines[MAIN].body[2].kind else { panic!("it is one") };
+    let takes_turns = pass(vec![count_to(30000, vec![step_total()])]);
+    assert_eq!(kinds(&takes_turns), ["load", "load", "finally"]);
+    let StatementKind::Finally { body, last } = &takes_turns.routines[MAIN].body[2].kind else { panic!("it is one") };
     assert_eq!((body.len(), last.len()), (1, 2));
+    let looped = StatementKind::Loop {
+        body: vec![step_total(), stmt(StatementKind::Turn)],
+        continuing: Vec::new(),
+        count: None,
+    };
+    let looped = sample(vec![stmt(looped)]);
+    assert_eq!(kinds(&promoted(&looped, Gain::WHOLE)), ["other"], "a WHILE of scalars alone");
+    assert_eq!(kinds(&promoted(&looped, Gain { of_scalars: true, ..Gain::WHOLE })), ["load", "finally"]);
 }
 
 #[test]
