@@ -31,7 +31,6 @@ pub fn units(text: &Chars) -> TokenStream {
             let bytes = Literal::byte_string(bytes);
             quote!(#bytes)
         }
-        Chars::Wide(units) if units.is_empty() => quote!(&[]),
         Chars::Wide(units) => match String::from_utf16(units) {
             // What turns the direction of writing is refused by rustc.
             Ok(text) if readable(&text) == text => quote!(&text::utf16!(#text)),

@@ -1,5 +1,5 @@
 //! Reals to decimal digits and back, exactly: as few digits as read back the same, and the nearest real to
-//! any digits.
+//! up to 38 digits.
 
 mod big;
 

@@ -307,7 +307,7 @@ fn number(text: &[u8], format: Format) -> f64 {
         let power = power.min(100_000);
         digits.exponent = digits.exponent.saturating_add(if is_below { -power } else { power });
     }
-    let value = decimal::nearest(digits.number, digits.exponent, format);
+    let value = digits.nearest(format);
     if is_negative { -value } else { value }
 }
 
@@ -318,7 +318,7 @@ fn fixed_number(text: &[u8], format: Format) -> f64 {
     if let Some((b'.', fraction)) = digits.take(text, false, b',').split_first() {
         digits.take(fraction, true, b',');
     }
-    let value = decimal::nearest(digits.number, digits.exponent, format);
+    let value = digits.nearest(format);
     if is_negative { -value } else { value }
 }
 
@@ -328,11 +328,22 @@ struct Significant {
     number: u128,
     count: u32,
     exponent: i32,
+    /// Whether digits that are not kept are more than nothing.
+    is_more: bool,
 }
 
 impl Significant {
-    /// More than lie between two reals and the half way between them need, of numbers as people write them.
-    const MOST: u32 = 36;
+    /// As many as 128 bits hold, with one digit more for what is not kept. What lies half the way between two reals, and is
+    /// written with still more digits, may go to either.
+    const MOST: u32 = 37;
+
+    /// The nearest real. Of what is not kept, that it is there decides: by however little it is more than the digits that are.
+    fn nearest(&self, format: Format) -> f64 {
+        match self.is_more {
+            true => decimal::nearest(self.number * 10 + 1, self.exponent.saturating_sub(1), format),
+            false => decimal::nearest(self.number, self.exponent, format),
+        }
+    }
 
     /// Takes digits from the start of `text`, without the character that is `passed` over; the rest of it.
     fn take<'t>(&mut self, text: &'t [u8], is_fraction: bool, passed: u8) -> &'t [u8] {
@@ -349,9 +360,8 @@ impl Significant {
             if is_kept {
                 self.number = self.number * 10 + u128::from(*byte - b'0');
                 self.count += u32::from(self.number > 0);
-            } else if *byte != b'0' {
-                // More than what is kept, by however little.
-                self.number |= 1;
+            } else {
+                self.is_more |= *byte != b'0';
             }
             let shift = i32::from(!is_kept) - i32::from(is_fraction);
             self.exponent = self.exponent.saturating_add(shift);
@@ -456,6 +466,8 @@ mod tests {
         ] {
             assert_eq!(to_lint(text.as_bytes()), value, "{text}");
         }
+        // Half the way between two REALs: the even one.
+        assert_eq!(to_real(b"1273929092349135316908359527587890625e-41").to_bits(), 928_365_270);
         for (text, value) in [
             ("1.5", 1.5),
             (" -2", -2.0),
@@ -470,6 +482,8 @@ mod tests {
             ("1_0.2_5", 10.25),
             ("0.1000000000000000055511151231257827021181583404541015625", 0.1),
             ("9007199254740993.00000000000000000000000000000000000000000001", 9_007_199_254_740_994.0),
+            // More digits than are kept, and no half way between two reals.
+            ("9007199254740993.000000000000000000000000000000000000000", 9_007_199_254_740_992.0),
         ] {
             assert_eq!(to_lreal(text.as_bytes()), value, "{text}");
         }
