@@ -41,9 +41,7 @@ impl Big {
 
     /// One word more, where something is left to carry.
     fn carried(&mut self, carry: u64) {
-        if carry > 0
-            && let Some(word) = self.words.get_mut(self.used)
-        {
+        if let Some(word) = self.words.get_mut(self.used).filter(|_| carry > 0) {
             *word = carry as u32;
             self.used += 1;
         }
