@@ -10,18 +10,8 @@ impl<'p> Function<'_, 'p> {
     /// Statements whose faults are handled: they lead to a block of their own, which passes on what may not be caught.
     pub(crate) fn attempt(&mut self, body: &'p Block, kind: &'p Place, handler: &'p Block) -> Flow {
         let [caught, after] = [(); 2].map(|()| self.builder.create_block());
-        let around = core::mem::take(&mut self.faults);
-        let mut flow = [self.block(body), Flow::Leaves];
-        if flow[0] == Flow::Continues {
-            self.ins().jump(after, &[]);
-        }
-        let mut is_reached = false;
-        self.builder.append_block_param(caught, CODE);
-        self.end_faults(&mut |this, code| {
-            is_reached = true;
-            this.ins().jump(caught, &[BlockArg::Value(code)]);
-        });
-        self.faults = around;
+        let (flow, is_reached) = self.with_faults_to(caught, after, &mut |this| this.block(body));
+        let mut flow = [flow, Flow::Leaves];
         if is_reached {
             self.go_on_in(caught);
             flow[1] = self.handle(caught, kind, handler);
@@ -54,6 +44,27 @@ impl<'p> Function<'_, 'p> {
     ) -> Flow {
         let [faulted, after] = [(); 2].map(|()| self.builder.create_block());
         self.builder.set_cold_block(faulted);
+        let (flow, is_reached) = self.with_faults_to(faulted, after, run);
+        if is_reached {
+            self.go_on_in(faulted);
+            let code = self.builder.block_params(faulted)[0];
+            end(self);
+            let passing = self.passing_block();
+            self.ins().jump(passing, &[BlockArg::Value(code)]);
+        }
+        if flow == Flow::Continues {
+            self.go_on_in(after);
+        }
+        flow
+    }
+
+    /// Emits what leads to `after` at its end, and to `faulted`, with the code, by a fault. Whether either is reached.
+    fn with_faults_to(
+        &mut self,
+        faulted: clif::Block,
+        after: clif::Block,
+        run: &mut dyn FnMut(&mut Self) -> Flow,
+    ) -> (Flow, bool) {
         let around = core::mem::take(&mut self.faults);
         let flow = run(self);
         if flow == Flow::Continues {
@@ -66,17 +77,7 @@ impl<'p> Function<'_, 'p> {
             this.ins().jump(faulted, &[BlockArg::Value(code)]);
         });
         self.faults = around;
-        if is_reached {
-            self.go_on_in(faulted);
-            let code = self.builder.block_params(faulted)[0];
-            end(self);
-            let passing = self.passing_block();
-            self.ins().jump(passing, &[BlockArg::Value(code)]);
-        }
-        if flow == Flow::Continues {
-            self.go_on_in(after);
-        }
-        flow
+        (flow, is_reached)
     }
 
     fn handle(&mut self, caught: clif::Block, kind: &Place, handler: &'p Block) -> Flow {

@@ -1,6 +1,6 @@
 //! Digits and reals by long division: exact for every number, and slow.
 
-use super::{Digits, Format, parts};
+use super::digits::{Digits, Format, parts};
 
 /// An unsigned integer of as many bits as the fraction of any LREAL needs.
 #[derive(Clone)]
