@@ -111,7 +111,10 @@ impl<'a> Machine<'a> {
         let Some(ty) = value.ty.elementary() else { return unknown("this operand of NOT or -") };
         match op {
             UnaryOp::Plus => Ok(value),
-            UnaryOp::Neg => self.computed("NEG", ty, &[value.as_scalar()?], inner.span),
+            UnaryOp::Neg => {
+                let negative = self.computed("NEG", ty, &[value.as_scalar()?], inner.span)?;
+                self.kept(negative)
+            }
             // Which of its operands' types a selection has does not show but here.
             UnaryOp::Not if matches!(inner.kind, ExprKind::Call(..)) && self.promotes(ty) => {
                 unknown("NOT of a narrow value that a function chooses")

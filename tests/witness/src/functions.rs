@@ -4,7 +4,7 @@ use crate::calls::is_enable;
 use crate::dates::unit;
 use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
-use crate::operators::operator;
+use crate::operators::{kept_of, operator};
 use crate::storage::{Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
@@ -414,7 +414,7 @@ impl<'a> Machine<'a> {
         if let Some(to) = name.strip_prefix("TO_") {
             let value = self.value(frame, expr, None)?;
             if let Some(converted) = self.text_converted(&value, to)? {
-                return Ok(converted);
+                return self.kept(converted);
             }
             return self.converted_by_name(&value, named(to)?, at);
         }
@@ -425,7 +425,7 @@ impl<'a> Machine<'a> {
             None => return unknown(&format!("the function {name}")),
         };
         if let Some(converted) = self.text_converted(&value, to)? {
-            return Ok(converted);
+            return self.kept(converted);
         }
         self.converted_by_name(&value, named(to)?, at)
     }
@@ -433,6 +433,15 @@ impl<'a> Machine<'a> {
     /// TIMEs and numbers meet at the [unit] of the TIME, of which CODESYS takes whole ones; of a bit string BOOL takes the
     /// rightmost bit, but for CODESYS; of an integer it is whether it is 0.
     fn converted_by_name(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
+        let is_integer = value.ty.base().is_some_and(|it| it.is_integer() || it.is_bits());
+        if to == Elementary::Time && is_integer && self.counts_milliseconds() {
+            return kept_of(self.declared.family, value.as_integer()? * 1_000_000);
+        }
+        let value = self.converted_to(value, to, at)?;
+        self.kept(value)
+    }
+
+    fn converted_to(&self, value: &Value<'a>, to: Elementary, at: Span) -> Outcome<Value<'a>> {
         let scalar = value.as_scalar()?;
         let Some(from) = value.ty.base() else { return unknown("a conversion of this type") };
         if to.is_date() && from.is_real() && self.is_codesys() {

@@ -98,6 +98,18 @@ impl<'a> Machine<'a> {
         at: Span,
         asked: Option<&Type<'a>>,
     ) -> Outcome<Value<'a>> {
+        let value = self.operated(op, a, b, at, asked)?;
+        self.kept(value)
+    }
+
+    fn operated(
+        &mut self,
+        op: BinaryOp,
+        a: Value<'a>,
+        b: Value<'a>,
+        at: Span,
+        asked: Option<&Type<'a>>,
+    ) -> Outcome<Value<'a>> {
         if a.is_text() && b.is_text() {
             // Unit by unit; a text comes after those that it begins with.
             let order = Scalar::I16(a.as_text()?.cmp(&b.as_text()?) as i16);
@@ -137,16 +149,24 @@ impl<'a> Machine<'a> {
     fn scaled(&mut self, op: BinaryOp, time: &Value<'a>, by: &Value<'a>, at: Span) -> Outcome<Value<'a>> {
         let (Some(ty), Some(other)) = (time.ty.elementary(), by.ty.elementary()) else { return unknown("a TIME") };
         let wide = if other.is_real() { Elementary::Lreal } else { Elementary::Lint };
+        if op == BinaryOp::Mul && !other.is_real() && ty == Elementary::Time && self.counts_milliseconds() {
+            return kept_of(self.declared.family, time.as_integer()? * by.as_integer()?);
+        }
         let operands = [in_repr(time.as_scalar()?, wide).as_scalar()?, in_repr(by.as_scalar()?, wide).as_scalar()?];
         let scaled = in_repr(self.applied(name(op), wide, &operands, at)?.as_scalar()?, ty);
-        let has_parts = ty != Elementary::Time || (op == BinaryOp::Mul && !other.is_real());
-        if has_parts || !matches!(self.declared.family, Family::Codesys | Family::S7) {
-            return Ok(scaled);
+        Ok(scaled)
+    }
+
+    pub(crate) fn counts_milliseconds(&self) -> bool {
+        matches!(self.declared.family, Family::Codesys | Family::S7)
+    }
+
+    /// What CODESYS and S7 keep of a TIME.
+    pub(crate) fn kept(&self, value: Value<'a>) -> Outcome<Value<'a>> {
+        if value.ty.elementary() != Some(Elementary::Time) || !self.counts_milliseconds() {
+            return Ok(value);
         }
-        // A TIME of these is a number of milliseconds.
-        let nanoseconds = scaled.as_integer()?;
-        let Ok(whole) = i64::try_from(nanoseconds - nanoseconds % 1_000_000) else { return unknown("a TIME") };
-        Ok(in_repr(Scalar::I64(whole), ty))
+        kept_of(self.declared.family, value.as_integer()?)
     }
 
     /// One of the runtime's operations at a type. A comparison gives a BOOL.
@@ -292,5 +312,15 @@ impl Machine<'_> {
                 Ok(ty.meets(real).unwrap_or(if long { Elementary::Lreal } else { real }))
             }
         }
+    }
+}
+
+/// Nanoseconds as 32 bits of milliseconds: with a sign in S7, without one in CODESYS.
+pub(crate) fn kept_of<'a>(family: Family, nanoseconds: i128) -> Outcome<Value<'a>> {
+    let low = (nanoseconds / 1_000_000).rem_euclid(1 << 32);
+    let milliseconds = if family == Family::S7 && low >= 1 << 31 { low - (1 << 32) } else { low };
+    match i64::try_from(milliseconds * 1_000_000) {
+        Ok(it) => Ok(Value::scalar(Elementary::Time, Scalar::I64(it))),
+        Err(_) => unknown("a TIME"),
     }
 }

@@ -112,7 +112,7 @@ impl<'s> Checker<'_, 's> {
             return self.character_and_number(value, from, to, span);
         }
         match (from.counted_in(), to.counted_in()) {
-            (Some(_), Some(_)) if is_the_same(from, to) => Some(self.convert(Conversion::Same, target, value)),
+            (Some(_), Some(_)) if is_the_same(from, to) && (from == to || to != Elementary::Time) => Some(self.convert(Conversion::Same, target, value)),
             (Some(_), Some(_)) => {
                 let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
                 self.as_time(nanoseconds, to, span)
@@ -156,6 +156,9 @@ impl<'s> Checker<'_, 's> {
                     }
                     _ => self.number_as(value, Elementary::Lint, span)?,
                 };
+                if to == Elementary::Time && !real {
+                    return self.time_of_milliseconds(wide, span);
+                }
                 let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
                 let count = self.since_epoch(Op::Add, count, since, span)?;

@@ -51,7 +51,8 @@ impl<'s> Checker<'_, 's> {
             Some(op) => self.apply(op, Type::LINT, vec![nanoseconds], Type::LINT, span)?,
             None => nanoseconds,
         };
-        Some(self.convert(Conversion::Same, Type::Elementary(to), settled))
+        let settled = self.convert(Conversion::Same, Type::Elementary(to), settled);
+        self.kept_duration(settled, span)
     }
 
     pub(super) fn date_function(

@@ -236,6 +236,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let value = self.apply(Op::Neg, ty, vec![value], ty, span)?;
+        let value = self.kept_duration(value, span)?;
         Some(computed(value, own))
     }
 

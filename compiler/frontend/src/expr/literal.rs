@@ -42,6 +42,9 @@ impl<'s> Checker<'_, 's> {
                 if ty.is_duration() {
                     self.lower_units(*ty, *nanoseconds, span)?;
                 }
+                if *ty == Elementary::Time {
+                    self.refuse_unkept(*nanoseconds, span)?;
+                }
                 typed(*ty, Value::I64(*nanoseconds))
             }
             LiteralValue::String(chars) => Some(self.string_literal(chars, span)),

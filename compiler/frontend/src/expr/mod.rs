@@ -28,6 +28,7 @@ mod coverage;
 mod dates;
 mod dispatch;
 mod division;
+mod duration;
 mod enable;
 mod expression;
 mod fold;

@@ -4,13 +4,12 @@ use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
 use crate::dialect::Dialect;
-use crate::dialect::rules::{Functions, Literals, TimeAsNumber};
+use crate::dialect::rules::{Functions, Literals};
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::{Block, Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
 use staunch_runtime::Class;
-use staunch_runtime::time::MILLISECOND;
 
 const REAL: Type = Type::Elementary(Elementary::Real);
 
@@ -447,97 +446,6 @@ impl<'s> Checker<'_, 's> {
         let whole = self.apply(Op::Whole, ty, vec![quotient], ty, span)?;
         let product = self.apply(Op::Mul, ty, vec![whole, b], ty, span)?;
         self.apply(Op::Sub, ty, vec![a, product], ty, span)
-    }
-
-    fn add_times(&mut self, sides: Sides) -> Option<Expr> {
-        let op = arithmetic_op(sides.op);
-        let (op_span, span) = (sides.op_span, sides.span);
-        let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_duration(), "both sides need to be times")?;
-        if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
-            let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
-            self.refuse_time_overflow(sum.is_none(), span)?;
-        }
-        if self.decl.dialect(span).rules().time_is_seconds() {
-            let op = if op == Op::Add { Op::TimePlus } else { Op::TimeMinus };
-            let [a, b] = [a, b].map(|it| self.convert(Conversion::Same, Type::LINT, it));
-            let sum = self.apply(op, Type::LINT, vec![a, b], Type::LINT, op_span)?;
-            return Some(self.convert(Conversion::Same, ty, sum));
-        }
-        self.apply(op, ty, vec![a, b], ty, op_span)
-    }
-
-    pub(super) fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
-        if overflows {
-            self.report(
-                Diagnostic::new(Code::E0209, span, "this constant TIME overflows")
-                    .label("a TIME reaches about 292 years either way"),
-            );
-            return None;
-        }
-        Some(())
-    }
-
-    /// TIME `*` or `/` a number. An integer counts exactly, a real through LREAL; in OpenPLC from v4.1 on at its own type, and
-    /// what is less than a nanosecond is cut.
-    fn scale_time(&mut self, sides: Sides) -> Option<Expr> {
-        let op = arithmetic_op(sides.op);
-        let (op_span, span) = (sides.op_span, sides.span);
-        let mixes = self.decl.dialect(span).mixes_bits_and_integers();
-        let Operand::Typed(time) = sides.a else { return None };
-        let ty = time.ty;
-        let integer = match sides.b.ty() {
-            None => matches!(sides.b, Operand::Integer(_)),
-            Some(Type::Elementary(it)) if it.is_integer() => true,
-            Some(Type::Elementary(it)) if mixes && it.is_bits() && it != Elementary::Bool => true,
-            Some(Type::Elementary(it)) if it.is_real() => false,
-            Some(_) => {
-                let sides = Sides { a: Operand::Typed(time), ..sides };
-                self.report_operands(&sides, "a TIME is multiplied or divided by a number");
-                return None;
-            }
-        };
-        if self.decl.dialect(span).rules().time_is_seconds() {
-            let op = if op == Op::Mul { Op::TimeTimes } else { Op::TimeOver };
-            let factor = self.side(sides.b, Elementary::Lreal, sides.right)?;
-            let lint = self.convert(Conversion::Same, Type::LINT, time);
-            let scaled = self.apply(op, Type::LINT, vec![lint, factor], Type::LINT, op_span)?;
-            return Some(self.convert(Conversion::Same, ty, scaled));
-        }
-        if integer {
-            let count = self.side(sides.b, Elementary::Lint, sides.right)?;
-            if let (Some(Value::I64(a)), Some(Value::I64(b)), Op::Mul) = (time.as_const(), count.as_const(), op) {
-                self.refuse_time_overflow(a.checked_mul(b).is_none(), span)?;
-            }
-            let count = self.convert(Conversion::Same, ty, count);
-            let scaled = self.apply(op, ty, vec![time, count], ty, op_span)?;
-            return if op == Op::Div { self.whole_milliseconds(scaled, op_span) } else { Some(scaled) };
-        }
-        let cuts = self.decl.dialect(span).rules().time_as_number.choice == TimeAsNumber::CutMilliseconds;
-        let at_real = cuts && sides.b.computed_at() == Some(REAL);
-        let computed = if at_real { Elementary::Real } else { Elementary::Lreal };
-        let factor = self.side(sides.b, computed, sides.right)?;
-        let computed = Type::Elementary(computed);
-        let lint = self.convert(Conversion::Same, Type::LINT, time);
-        let time = self.convert(Conversion::Value, computed, lint);
-        let scaled = self.apply(op, computed, vec![time, factor], computed, op_span)?;
-        let lint = match cuts {
-            true => self.apply(Op::TruncLint, computed, vec![scaled], Type::LINT, op_span)?,
-            false => self.convert(Conversion::Value, Type::LINT, scaled),
-        };
-        let scaled = self.convert(Conversion::Same, ty, lint);
-        self.whole_milliseconds(scaled, op_span)
-    }
-
-    /// A TIME without its parts of a millisecond, where the dialect's have none.
-    fn whole_milliseconds(&mut self, time: Expr, span: Span) -> Option<Expr> {
-        let ty = time.ty;
-        if ty != Type::Elementary(Elementary::Time) || !self.decl.dialect(span).rules().cuts_milliseconds() {
-            return Some(time);
-        }
-        let nanoseconds = self.convert(Conversion::Same, Type::LINT, time);
-        let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, span)?;
-        let whole = self.scaled_by(Op::Mul, milliseconds, MILLISECOND, false, span)?;
-        Some(self.convert(Conversion::Same, ty, whole))
     }
 
     /// `a AND_THEN b`: `b` is evaluated only when it decides.

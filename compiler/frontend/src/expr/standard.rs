@@ -130,7 +130,8 @@ impl<'s> Checker<'_, 's> {
         let (block, at) = (self.temporary("clock", Type::Block(id)), self.at(span));
         self.push(StatementKind::CallBlock { block: block.clone(), instruction: 0, inputs: Vec::new() }, span);
         let now = Expr::load(pin_place(block, id, "NOW"), at);
-        Some(self.convert(Conversion::Same, Type::Elementary(ty), now))
+        let now = self.convert(Conversion::Same, Type::Elementary(ty), now);
+        self.kept_duration(now, span)
     }
 
     /// The smallest bit string that holds a literal, where the dialect turns so many bits of it.

@@ -161,7 +161,8 @@ impl<'s> Checker<'_, 's> {
         let mut operands = vec![self.of_kind(text, false, span)?];
         operands.extend(self.kind_of_time(op, to, span));
         let value = self.text_function_of(op, Type::Elementary(made), operands, span)?;
-        Some(self.convert(Conversion::Value, Type::Elementary(to), value))
+        let value = self.convert(Conversion::Value, Type::Elementary(to), value);
+        self.kept_duration(value, span)
     }
 
     /// The number that a text spells, 0 where the type does not hold it (S7-1200 manual, 11/2011, p. 247).

@@ -457,20 +457,26 @@ impl Choice for CaseSelector {
     }
 }
 
-/// What becomes of parts of a millisecond that TIMEs are computed to.
+/// What a TIME is a number of. What is computed beyond that number wraps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PartsOfMilliseconds {
-    Kept,
-    Cut,
+pub enum TimeUnit {
+    Nanoseconds,
+    Milliseconds,
+    SignedMilliseconds,
 }
 
-impl Choice for PartsOfMilliseconds {
-    const RULE: &'static str = "parts of a millisecond of a TIME";
+impl Choice for TimeUnit {
+    const RULE: &'static str = "what a TIME is";
 
     fn words(self) -> &'static str {
         match self {
-            Self::Kept => "kept: it is nanoseconds",
-            Self::Cut => "cut off where TIMEs are divided, or multiplied by a REAL",
+            Self::Nanoseconds => "64 bits of nanoseconds with a sign",
+            Self::Milliseconds => {
+                "32 bits of milliseconds without a sign: `T#0ms - T#1ms` is `T#49d17h2m47s295ms`, `T#5ms / 2` is `T#2ms`"
+            }
+            Self::SignedMilliseconds => {
+                "32 bits of milliseconds with a sign: `T#24d20h31m23s647ms + T#1ms` is `T#-24d20h31m23s648ms`, `T#5ms / 2` is `T#2ms`"
+            }
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
+    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 use staunch_runtime::{Elementary, Value};
 
@@ -35,7 +35,7 @@ pub struct Rules {
     pub second_bool: Followed<SecondBool>,
     pub case_selector: Followed<CaseSelector>,
     pub loop_limit: Followed<LoopLimit>,
-    pub parts_of_milliseconds: Followed<PartsOfMilliseconds>,
+    pub time_unit: Followed<TimeUnit>,
 }
 
 impl Rules {
@@ -144,9 +144,13 @@ impl Rules {
         matches!(self.case_selector.choice, CaseSelector::Cut)
     }
 
-    /// What is computed of TIMEs has whole milliseconds.
-    pub const fn cuts_milliseconds(&self) -> bool {
-        matches!(self.parts_of_milliseconds.choice, PartsOfMilliseconds::Cut)
+    /// The integer type whose number of milliseconds a TIME is, where it is not of nanoseconds.
+    pub const fn milliseconds(&self) -> Option<Elementary> {
+        match self.time_unit.choice {
+            TimeUnit::Nanoseconds => None,
+            TimeUnit::Milliseconds => Some(Elementary::Udint),
+            TimeUnit::SignedMilliseconds => Some(Elementary::Dint),
+        }
     }
 
     /// Integers without a type are DINTs together, and wrap.

@@ -1,6 +1,6 @@
 //! What is known of a system and not followed, and what its documents leave open.
 
-use super::systems::{MATIEC, SIEMENS_DATES};
+use super::systems::{CODESYS_TIMES, MATIEC, SIEMENS_DATES};
 use crate::dialect::Dialect;
 use staunch_ir::{Part, Use};
 use staunch_runtime::{Class, Elementary};
@@ -26,14 +26,8 @@ pub fn otherwise(dialect: Dialect, part: Part) -> Option<&'static NotFollowed> {
     NOT_FOLLOWED.iter().find(|it| it.dialect == dialect && it.uses == Use::Part(part))
 }
 
-/// The rules that are known, and not followed: a TIME, DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
+/// The rules that are known, and not followed: a DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
 pub const NOT_FOLLOWED: &[NotFollowed] = &[
-    not_followed(
-        Dialect::Codesys,
-        Elementary::Time,
-        "32 bits of milliseconds without a sign: less than `T#0s` or more than `T#49d17h2m47s295ms` wraps",
-        CODESYS_TIMES,
-    ),
     not_followed(
         Dialect::Codesys,
         Elementary::Ltime,
@@ -48,12 +42,6 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         CODESYS_DATES,
     ),
     not_followed(Dialect::Codesys, Elementary::Tod, "32 bits of milliseconds: it has no parts of one", CODESYS_DATES),
-    not_followed(
-        Dialect::Siemens,
-        Elementary::Time,
-        "32 bits of milliseconds with a sign: from `T#-24d20h31m23s648ms` to `T#24d20h31m23s647ms`",
-        SIEMENS_DATES,
-    ),
     of_matiec(Use::Type(Elementary::Time), PARTS),
     of_matiec(Use::Type(Elementary::Dt), PARTS),
     of_matiec(Use::Type(Elementary::Tod), "it may be negative, or longer than a day: `TOD#00:00:00 - T#1s`"),
@@ -177,7 +165,6 @@ const fn of_processor(dialect: Dialect) -> NotFollowed {
     }
 }
 
-const CODESYS_TIMES: &str = "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"";
 const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
 
 const fn not_followed(dialect: Dialect, ty: Elementary, what: &'static str, evidence: &'static str) -> NotFollowed {

@@ -2,8 +2,8 @@
 
 use super::choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, PartsOfMilliseconds, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, ToBool,
+    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 use super::followed::{Followed, Rules};
 
@@ -33,7 +33,7 @@ pub(super) const IEC: Rules = Rules {
     second_bool: follows(SecondBool::Always, "IEC 61131-3, 7.3.2: the implementer may say otherwise"),
     case_selector: follows(CaseSelector::AsComputed, "IEC 61131-3, table 72"),
     loop_limit: follows(LoopLimit::Once, "IEC 61131-3, 7.3.3.4.2: the body changes none of them"),
-    parts_of_milliseconds: follows(PartsOfMilliseconds::Kept, "IEC 61131-3, 6.3.3.2: left to the implementer"),
+    time_unit: follows(TimeUnit::Nanoseconds, "IEC 61131-3, 6.3.3.2: left to the implementer"),
 };
 
 /// The choice of another dialect, where no page of the vendor says anything.
@@ -67,7 +67,7 @@ pub(super) const CSCAPE: Rules = Rules {
     second_bool: undocumented(IEC.second_bool),
     case_selector: undocumented(IEC.case_selector),
     loop_limit: undocumented(IEC.loop_limit),
-    parts_of_milliseconds: undocumented(IEC.parts_of_milliseconds),
+    time_unit: undocumented(IEC.time_unit),
 };
 
 pub(super) const CODESYS: Rules = Rules {
@@ -88,7 +88,7 @@ pub(super) const CODESYS: Rules = Rules {
         Literals::Smallest,
         "CODESYS help and Beckhoff, \"Typed Literals\": the smallest possible data type",
     ),
-    parts_of_milliseconds: follows(PartsOfMilliseconds::Cut, "CODESYS help, \"TIME, LTIME\": a number of milliseconds"),
+    time_unit: follows(TimeUnit::Milliseconds, CODESYS_TIMES),
     ..IEC
 };
 
@@ -173,11 +173,13 @@ pub(super) const SIEMENS: Rules = Rules {
     real_of_text: follows(RealOfText::FixedPoint, "S7-1200 manual, 11/2011, p. 247, table 8-33"),
     text_positions: follows(TextPositions::Empty, "S7-1200 manual, 03/2014, tables 8-57, 8-60, 8-63 and 8-66"),
     limit_crossed: follows(LimitCrossed::Value, "S7-1200 manual, \"LIMIT\", ENO status"),
-    parts_of_milliseconds: follows(PartsOfMilliseconds::Cut, SIEMENS_DATES),
+    time_unit: follows(TimeUnit::SignedMilliseconds, SIEMENS_DATES),
     ..IEC
 };
 
 pub(super) const SIEMENS_DATES: &str = "S7-1200 manual V4.2, table 5-32";
+
+pub(super) const CODESYS_TIMES: &str = "CODESYS help, \"TIME, LTIME\"; Beckhoff Information System, \"TIME/LTIME\"";
 
 const SIEMENS_BY_ZERO: &str = "S7-1200 manual, \"DIV\", \"MOD\", ENO status: 0 is returned";
 

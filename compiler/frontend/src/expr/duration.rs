@@ -1,0 +1,161 @@
+//! Durations: their sums, what they are multiplied and divided by, and the number that the dialect keeps of a TIME.
+
+use super::checker::Checker;
+use super::operand::Operand;
+use super::operator::{Meeting, Sides, arithmetic_op};
+use crate::dialect::rules::TimeAsNumber;
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
+use staunch_runtime::Time;
+use staunch_runtime::time::MILLISECOND;
+
+const REAL: Type = Type::Elementary(Elementary::Real);
+
+impl Checker<'_, '_> {
+    pub(super) fn add_times(&mut self, sides: Sides) -> Option<Expr> {
+        let op = arithmetic_op(sides.op);
+        let (op_span, span) = (sides.op_span, sides.span);
+        let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_duration(), "both sides need to be times")?;
+        if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
+            let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
+            self.refuse_time_overflow(sum.is_none(), span)?;
+        }
+        if self.decl.dialect(span).rules().time_is_seconds() {
+            let op = if op == Op::Add { Op::TimePlus } else { Op::TimeMinus };
+            let [a, b] = [a, b].map(|it| self.convert(Conversion::Same, Type::LINT, it));
+            let sum = self.apply(op, Type::LINT, vec![a, b], Type::LINT, op_span)?;
+            return Some(self.convert(Conversion::Same, ty, sum));
+        }
+        let sum = self.apply(op, ty, vec![a, b], ty, op_span)?;
+        self.kept_duration(sum, op_span)
+    }
+
+    pub(super) fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
+        if overflows {
+            self.report(
+                Diagnostic::new(Code::E0209, span, "this constant TIME overflows")
+                    .label("a TIME reaches about 292 years either way"),
+            );
+            return None;
+        }
+        Some(())
+    }
+
+    /// TIME `*` or `/` a number. An integer counts exactly, a real through LREAL; in OpenPLC from v4.1 on at its own type, and
+    /// what is less than a nanosecond is cut.
+    pub(super) fn scale_time(&mut self, sides: Sides) -> Option<Expr> {
+        let by_integer = match sides.b.ty() {
+            None => matches!(sides.b, Operand::Integer(_)),
+            Some(Type::Elementary(it)) if it.is_integer() => true,
+            Some(Type::Elementary(it)) if self.counts_as_integer(it, sides.span) => true,
+            Some(Type::Elementary(it)) if it.is_real() => false,
+            Some(_) => {
+                self.report_operands(&sides, "a TIME is multiplied or divided by a number");
+                return None;
+            }
+        };
+        if self.decl.dialect(sides.span).rules().time_is_seconds() {
+            return self.scale_seconds(sides);
+        }
+        if by_integer { self.scale_by_integer(sides) } else { self.scale_by_real(sides) }
+    }
+
+    fn counts_as_integer(&self, ty: Elementary, span: Span) -> bool {
+        self.decl.dialect(span).mixes_bits_and_integers() && ty.is_bits() && ty != Elementary::Bool
+    }
+
+    fn scale_seconds(&mut self, sides: Sides) -> Option<Expr> {
+        let Operand::Typed(time) = sides.a else { return None };
+        let ty = time.ty;
+        let op = if arithmetic_op(sides.op) == Op::Mul { Op::TimeTimes } else { Op::TimeOver };
+        let factor = self.side(sides.b, Elementary::Lreal, sides.right)?;
+        let lint = self.convert(Conversion::Same, Type::LINT, time);
+        let scaled = self.apply(op, Type::LINT, vec![lint, factor], Type::LINT, sides.op_span)?;
+        Some(self.convert(Conversion::Same, ty, scaled))
+    }
+
+    fn scale_by_integer(&mut self, sides: Sides) -> Option<Expr> {
+        let Operand::Typed(time) = sides.a else { return None };
+        let (ty, op, op_span) = (time.ty, arithmetic_op(sides.op), sides.op_span);
+        let count = self.side(sides.b, Elementary::Lint, sides.right)?;
+        if ty == Type::TIME && self.decl.dialect(op_span).rules().milliseconds().is_some() {
+            let nanoseconds = self.convert(Conversion::Same, Type::LINT, time);
+            let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, op_span)?;
+            let scaled = self.apply(op, Type::LINT, vec![milliseconds, count], Type::LINT, op_span)?;
+            return self.time_of_milliseconds(scaled, op_span);
+        }
+        if let (Some(Value::I64(a)), Some(Value::I64(b)), Op::Mul) = (time.as_const(), count.as_const(), op) {
+            self.refuse_time_overflow(a.checked_mul(b).is_none(), sides.span)?;
+        }
+        let count = self.convert(Conversion::Same, ty, count);
+        self.apply(op, ty, vec![time, count], ty, op_span)
+    }
+
+    fn scale_by_real(&mut self, sides: Sides) -> Option<Expr> {
+        let Operand::Typed(time) = sides.a else { return None };
+        let (ty, op, op_span) = (time.ty, arithmetic_op(sides.op), sides.op_span);
+        let cuts = self.decl.dialect(sides.span).rules().time_as_number.choice == TimeAsNumber::CutMilliseconds;
+        let at_real = cuts && sides.b.computed_at() == Some(REAL);
+        let computed = if at_real { Elementary::Real } else { Elementary::Lreal };
+        let factor = self.side(sides.b, computed, sides.right)?;
+        let computed = Type::Elementary(computed);
+        let lint = self.convert(Conversion::Same, Type::LINT, time);
+        let time = self.convert(Conversion::Value, computed, lint);
+        let scaled = self.apply(op, computed, vec![time, factor], computed, op_span)?;
+        let lint = match cuts {
+            true => self.apply(Op::TruncLint, computed, vec![scaled], Type::LINT, op_span)?,
+            false => self.convert(Conversion::Value, Type::LINT, scaled),
+        };
+        let scaled = self.convert(Conversion::Same, ty, lint);
+        self.kept_duration(scaled, op_span)
+    }
+
+    /// What the dialect keeps of a duration: of a TIME the number of milliseconds, where it is one.
+    pub(super) fn kept_duration(&mut self, duration: Expr, span: Span) -> Option<Expr> {
+        if duration.ty != Type::TIME || self.decl.dialect(span).rules().milliseconds().is_none() {
+            return Some(duration);
+        }
+        let nanoseconds = self.convert(Conversion::Same, Type::LINT, duration);
+        let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, span)?;
+        self.time_of_milliseconds(milliseconds, span)
+    }
+
+    /// A LINT of milliseconds as a TIME: what the dialect does not keep of it is cut off above.
+    pub(super) fn time_of_milliseconds(&mut self, milliseconds: Expr, span: Span) -> Option<Expr> {
+        let count = match self.decl.dialect(span).rules().milliseconds() {
+            Some(ty) => {
+                let kept = self.convert(Conversion::Value, Type::Elementary(ty), milliseconds);
+                self.convert(Conversion::Value, Type::LINT, kept)
+            }
+            None => milliseconds,
+        };
+        let nanoseconds = self.scaled_by(Op::Mul, count, MILLISECOND, false, span)?;
+        Some(self.convert(Conversion::Same, Type::TIME, nanoseconds))
+    }
+
+    /// Reports a literal of a TIME that the dialect does not keep as it is.
+    pub(super) fn refuse_unkept(&mut self, nanoseconds: Time, span: Span) -> Option<()> {
+        let Some(count) = self.decl.dialect(span).rules().milliseconds() else { return Some(()) };
+        let milliseconds = nanoseconds / MILLISECOND;
+        let long = self.decl.log.sources.text(span).split_once('#').map(|it| format!("LTIME#{}", it.1))?;
+        let is_whole = milliseconds * MILLISECOND == nanoseconds;
+        if is_whole && count.repr().integer(i128::from(milliseconds)).is_some() {
+            return Some(());
+        }
+        let literal = self.decl.log.sources.text(span);
+        let (message, label) = if !is_whole {
+            (format!("`{literal}` has a part of a millisecond"), "TIME holds whole milliseconds in this dialect")
+        } else if count.repr().is_unsigned() {
+            (format!("`{literal}` does not fit TIME"), "TIME holds T#0ms to T#49d17h2m47s295ms in this dialect")
+        } else {
+            let range = "TIME holds T#-24d20h31m23s648ms to T#24d20h31m23s647ms in this dialect";
+            (format!("`{literal}` does not fit TIME"), range)
+        };
+        let mut diagnostic = Diagnostic::new(Code::E0202, span, message).label(label);
+        if nanoseconds >= 0 {
+            diagnostic = diagnostic.help(format!("an LTIME holds nanoseconds: `{long}`"));
+        }
+        self.report(diagnostic);
+        None
+    }
+}
