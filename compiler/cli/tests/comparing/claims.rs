@@ -69,15 +69,15 @@ fn a_long_table_is_looked_up_where_it_changes() {
     assert_eq!(code, Some(0), "{text}");
 }
 
-/// CODESYS holds a TIME in 32 bits without a sign (its help, "TIME, LTIME"), so that `T#1s - T#2s` is no negative time.
-/// That is not followed: nothing is called equal that computes with one; a timer does not.
+/// CODESYS holds a DT in 32 bits of seconds (its help, "DATE"). That is not followed: nothing is called equal that computes
+/// with one; a comparison does not.
 #[test]
 fn a_rule_that_is_not_followed_is_never_equal() {
     let source = "PROGRAM p
 VAR_INPUT on : BOOL; END_VAR
-VAR a : TIME := T#1s; b : TIME := T#2s; d : TIME; neg : BOOL; END_VAR
-d := a - b;
-neg := on AND d < T#0s;
+VAR a : DT := DT#2024-01-01-00:00:01; d : DT; late : BOOL; END_VAR
+d := a + T#1s;
+late := on AND d > a;
 END_PROGRAM
 ";
     let no_run = OWN.written("unfollowed.txt", "no run\n");
@@ -85,16 +85,31 @@ END_PROGRAM
         let arguments = ["--from", from, "--to", to, "--assume", no_run.as_str()];
         let (code, text) = OWN.compare("time", source, &arguments);
         assert_eq!(code, Some(4), "{text}");
-        assert!(text.contains("TIME of CODESYS, which is not followed here and is used in line 4"), "{text}");
-        let timer = "PROGRAM p
-VAR_INPUT on : BOOL; END_VAR
-VAR t : TON; END_VAR
-t(IN := on, PT := T#30ms);
-END_PROGRAM
-";
-        let (code, text) = OWN.compare("timer", timer, &arguments);
+        assert!(text.contains("DT of CODESYS, which is not followed here and is used in line 4"), "{text}");
+        let compared = source.replace("a + T#1s", "a");
+        let (code, text) = OWN.compare("compared", &compared, &arguments);
         assert_eq!(code, Some(0), "{text}");
     }
+}
+
+/// A TIME of CODESYS has 32 bits of milliseconds without a sign, so that `T#1s - T#2s` is no negative time; and no input is
+/// tried that it does not have.
+#[test]
+fn a_time_of_codesys_has_no_sign() {
+    let no_run = OWN.written("unsigned_time.txt", "no run\n");
+    let source = "PROGRAM p
+VAR_INPUT on : BOOL; a : TIME; END_VAR
+VAR_OUTPUT below : BOOL; END_VAR
+below := on AND a - T#2s < T#0s;
+END_PROGRAM
+";
+    let (code, text) =
+        OWN.compare("unsigned_time", source, &["--from", "iec", "--to", "codesys", "--assume", no_run.as_str()]);
+    assert_eq!(code, Some(1), "{text}");
+    let never = source.replace("a - T#2s < T#0s", "a < T#0s");
+    let (code, text) =
+        OWN.compare("never_below", &never, &["--from", "iec", "--to", "codesys", "--assume", no_run.as_str()]);
+    assert_eq!(code, Some(0), "{text}");
 }
 
 /// Where the first difference needs STOP -> RUN, which most programs from CODESYS have, the next one is shown as well.

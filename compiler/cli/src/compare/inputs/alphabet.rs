@@ -9,6 +9,7 @@ use crate::compare::program::scalar::{Role, Scalar, Way};
 use crate::compare::program::walked::Name;
 use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
 use staunch_runtime::StringType;
+use staunch_runtime::time::MILLISECOND;
 use std::collections::HashSet;
 
 /// Combinations of inputs that are tried in every scan of an exhaustive search, if it is not over by then.
@@ -259,7 +260,8 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input, assumed: Numbers) -> C
     for (facts, name) in facts.iter().zip(names) {
         near.add_all(name.map(|it| facts.worth_trying(it)).unwrap_or_default());
     }
-    let (values, all) = values(program, scalars[0].ty, &near);
+    let times = times_of_both(pair, scalars[0].ty);
+    let (values, all) = values(program, scalars[0].ty, &near, times);
     let range = |side: usize| pair.sides[side].program.range(scalars[side].ty);
     let covered = if all && range(0) == range(1) {
         Some(Covered::All)
@@ -277,25 +279,44 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input, assumed: Numbers) -> C
         }
     }
     let type_range = pair.sides[0].program.repr(scalars[0].ty).filter(|it| it.is_integer()).and_then(Repr::range);
-    Choice { values: kept, covered, range: range(0).or(type_range) }
+    Choice { values: kept, covered, range: times.map(|it| (it.low, it.high)).or(range(0)).or(type_range) }
+}
+
+/// The least and the greatest number to try, and what lies between two of them.
+#[derive(Clone, Copy)]
+struct Range {
+    low: i128,
+    high: i128,
+    step: i128,
+}
+
+/// Of a TIME, in nanoseconds: those that both systems have.
+fn times_of_both(pair: &Pair, ty: Type) -> Option<Range> {
+    let counts = pair.sides.iter().filter_map(|it| it.dialect.rules().milliseconds()?.repr().range());
+    let (low, high) = counts.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1))).filter(|_| ty == Type::TIME)?;
+    let step = i128::from(MILLISECOND);
+    Some(Range { low: low * step, high: high * step, step })
 }
 
 /// What to try of a type, those near a comparison first; and whether that is all of it.
-fn values(program: &Program, ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
+fn values(program: &Program, ty: Type, near: &Numbers, times: Option<Range>) -> (Vec<Value>, bool) {
     let Some(repr) = program.repr(ty) else { return (Vec::new(), false) };
     match ty {
         Type::Enum(id) => (program.enumeration(id).values.iter().map(|it| it.value).collect(), true),
         Type::Elementary(Elementary::Bool) => (vec![Value::Bool(false), Value::Bool(true)], true),
         _ if repr.is_float() => (reals(repr, near), false),
-        _ => integers(repr, program.range(ty).or(repr.range()).unwrap_or((0, 0)), ty, near),
+        _ => {
+            let (low, high) = program.range(ty).or(repr.range()).unwrap_or((0, 0));
+            integers(repr, times.unwrap_or(Range { low, high, step: 1 }), ty, near)
+        }
     }
 }
 
-fn integers(repr: Repr, (low, high): (i128, i128), ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
-    let inside = |it: &i128| (low..=high).contains(it);
+fn integers(repr: Repr, Range { low, high, step }: Range, ty: Type, near: &Numbers) -> (Vec<Value>, bool) {
+    let inside = |it: &i128| (low..=high).contains(it) && it % step == 0;
     let whole = high - low < MAX_WHOLE;
     let times = ty.elementary().is_some_and(Elementary::is_time);
-    let around = near.integers.iter().flat_map(|it| [*it, it.saturating_add(1), it.saturating_sub(1)]);
+    let around = near.integers.iter().flat_map(|it| [*it, it.saturating_add(step), it.saturating_sub(step)]);
     // A time of one scan, and of a hundred; and what counts and presets are small in.
     let some: &[i128] = if times { &[0, 10_000_000, 1_000_000_000] } else { &[1, 2, 3, 0, -1] };
     let ends = [high, low];
