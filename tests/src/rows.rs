@@ -30,7 +30,9 @@ pub enum Taken {
 
 impl Taken {
     pub fn all() -> impl Iterator<Item = Self> {
-        Elementary::ALL.into_iter().map(Self::Elementary).chain([Self::String, Self::Wstring])
+        // An LTIME without a sign is one of CODESYS, under the same name.
+        let named = Elementary::ALL.into_iter().filter(|it| *it != Elementary::Ultime);
+        named.map(Self::Elementary).chain([Self::String, Self::Wstring])
     }
 
     pub fn name(self) -> &'static str {

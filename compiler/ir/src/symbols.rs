@@ -389,7 +389,7 @@ struct TypeName(Type);
 impl fmt::Display for TypeName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
-            Type::Elementary(it) | Type::Subrange(it, _) => f.write_str(it.name()),
+            Type::Elementary(it) | Type::Subrange(it, _) => f.write_str(it.own_name()),
             Type::String(it) => write!(f, "{it}"),
             Type::Enum(id) => write!(f, "enum:{}", id.0),
             Type::Array(id) => write!(f, "array:{}", id.0),

@@ -51,7 +51,7 @@ impl<'p> Emitter<'p> {
 
     pub fn ty(&self, ty: Type) -> TokenStream {
         match ty {
-            Type::Elementary(it) if it.is_time() => quote!(Time),
+            Type::Elementary(it) if it.is_time() && !it.repr().is_unsigned() => quote!(Time),
             Type::Elementary(it) | Type::Subrange(it, _) => {
                 let repr = ident(it.repr().rust_name());
                 quote!(#repr)

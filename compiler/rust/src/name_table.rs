@@ -75,7 +75,7 @@ impl Emitter<'_> {
                 self.named(array.element, at.element(array.low, array.high, array.len()), rows);
             }
             Type::Block(id) => named_pins(id, &at, rows),
-            Type::Elementary(it) | Type::Subrange(it, _) => rows.push(at.row(it.name(), quote!(#place.into()))),
+            Type::Elementary(it) | Type::Subrange(it, _) => rows.push(at.row(it.own_name(), quote!(#place.into()))),
             Type::String(it) => rows.push(at.row(&it.to_string(), quote!((&#place).into()))),
             Type::Enum(id) => rows.push(at.row(&self.program.enumeration(id).name, quote!(#place.0.into()))),
         }
@@ -90,7 +90,7 @@ fn named_pins(id: BlockId, at: &At, rows: &mut Vec<Row>) {
         };
         let at = at.member(pin.name, &ident(pin.field));
         let place = at.place();
-        rows.push(at.row(ty.name(), quote!(#place.into())));
+        rows.push(at.row(ty.own_name(), quote!(#place.into())));
     }
 }
 

@@ -11,8 +11,8 @@ macro_rules! elementary {
         impl Elementary {
             pub const ALL: [Self; { [$(Repr::$repr),*].len() }] = [$(Self::$ty),*];
 
-            /// The IEC keyword.
-            pub const fn name(self) -> &'static str {
+            /// The name that no other type has.
+            pub const fn own_name(self) -> &'static str {
                 match self { $(Self::$ty => stringify!($name)),* }
             }
 
@@ -58,6 +58,8 @@ elementary! {
     /// Nanoseconds, signed 64-bit, as LTIME.
     Time    TIME    i64   I64   Duration;
     Ltime   LTIME   i64   I64   Duration;
+    /// Nanoseconds without a sign: an LTIME of CODESYS, which is what a user calls it.
+    Ultime  ULTIME  u64   U64   Duration;
     /// The midnight at which the day starts, in nanoseconds since 1970-01-01; as LDATE.
     Date    DATE    i64   I64   Date;
     Ldate   LDATE   i64   I64   Date;
@@ -145,6 +147,19 @@ impl Class {
 }
 
 impl Elementary {
+    /// The IEC keyword.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ultime => Self::Ltime.own_name(),
+            _ => self.own_name(),
+        }
+    }
+
+    /// Finds a type by its [own name](Self::own_name).
+    pub fn by_own_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|it| it.own_name() == name)
+    }
+
     /// Finds a type by its keyword, in any case.
     pub fn named(name: &str) -> Option<Self> {
         let short = || Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name));
@@ -210,7 +225,7 @@ impl Elementary {
         match self {
             Self::Time | Self::Tod => Some(time::MILLISECOND),
             Self::Date | Self::Dt => Some(time::SECOND),
-            Self::Ltime | Self::Ldate | Self::Ltod | Self::Ldt => Some(1),
+            Self::Ltime | Self::Ultime | Self::Ldate | Self::Ltod | Self::Ldt => Some(1),
             _ => None,
         }
     }

@@ -5,7 +5,8 @@ use crate::literal::UNITS;
 use crate::{Elementary, Time};
 use core::fmt::{Result, Write};
 
-/// A duration, a date or a time of day as a literal: `T#1s500ms`, `D#2024-02-29`, `TOD#23:59:59.5`.
+/// A duration, a date or a time of day as a literal: `T#1s500ms`, `D#2024-02-29`, `TOD#23:59:59.5`. Of an
+/// [LTIME without a sign](Elementary::Ultime) `time` has the bits.
 pub fn time(out: &mut impl Write, ty: Elementary, time: Time) -> Result {
     out.write_str(match ty {
         Elementary::Time => "T#",
@@ -24,6 +25,7 @@ pub fn time(out: &mut impl Write, ty: Elementary, time: Time) -> Result {
             out.write_char('-')?;
             time_of_day(out, time)
         }
+        Elementary::Ultime => magnitude(out, time as u64),
         _ => duration(out, time),
     }
 }
@@ -33,7 +35,11 @@ pub fn duration(out: &mut impl Write, time: Time) -> Result {
     if time < 0 {
         out.write_char('-')?;
     }
-    let mut rest = time.unsigned_abs();
+    magnitude(out, time.unsigned_abs())
+}
+
+fn magnitude(out: &mut impl Write, nanoseconds: u64) -> Result {
+    let mut rest = nanoseconds;
     if rest == 0 {
         return out.write_str("0s");
     }

@@ -42,6 +42,7 @@ pub enum LiteralErrorKind {
     },
     /// More than 64 bits of nanoseconds, about 292 years.
     DurationTooLong,
+    UnsignedDuration,
     /// Not year, month and day.
     DateForm,
     /// Not hour, minute and second.
@@ -78,6 +79,7 @@ impl LiteralErrorKind {
             Self::DurationTooLong => {
                 "a duration is at most 106751d 23h 47m 16s 854ms 775us 807ns: it counts nanoseconds in 64 bits with a sign"
             }
+            Self::UnsignedDuration => "it is at least 0s, and at most 213503d 23h 34m 33s 709ms 551us 615ns",
             Self::DateForm => "a date is year, month and day, as in `2024-02-29`",
             Self::TimeOfDayForm => "a time of day is hour, minute and second, as in `23:59:59.5`",
             Self::DateAndTimeForm => "a DT is a date and a time of day, as in `2024-02-29-23:59:59.5`",
@@ -158,6 +160,21 @@ pub fn check_real(text: &str) -> Result<(), LiteralError> {
 
 /// Nanoseconds of `-1h30m`, `1.5s` or `1d_2h`: what follows `T#`. Less than a nanosecond is cut off.
 pub fn duration(text: &str) -> Result<Time, LiteralError> {
+    let total = nanoseconds(text)?;
+    Time::try_from(total).map_err(|_| outside(text, LiteralErrorKind::DurationTooLong))
+}
+
+/// The same without a sign: up to twice as long.
+pub fn unsigned_duration(text: &str) -> Result<u64, LiteralError> {
+    let total = nanoseconds(text)?;
+    u64::try_from(total).map_err(|_| outside(text, LiteralErrorKind::UnsignedDuration))
+}
+
+const fn outside(text: &str, kind: LiteralErrorKind) -> LiteralError {
+    LiteralError { start: 0, end: text.len(), kind }
+}
+
+fn nanoseconds(text: &str) -> Result<i128, LiteralError> {
     let sign = text.starts_with(['-', '+']);
     let mut at = usize::from(sign);
     let mut total = 0_i128;
@@ -183,9 +200,7 @@ pub fn duration(text: &str) -> Result<Time, LiteralError> {
         return Err(LiteralError { start, end, kind: LiteralErrorKind::InnerFraction { total } });
     }
     underscores(text, u8::is_ascii_alphanumeric, u8::is_ascii_digit, LiteralErrorKind::UnderscoreInDuration)?;
-    let total = if text.starts_with('-') { -total } else { total };
-    let long = LiteralError { start: 0, end: text.len(), kind: LiteralErrorKind::DurationTooLong };
-    Time::try_from(total).map_err(|_| long)
+    Ok(if text.starts_with('-') { -total } else { total })
 }
 
 /// Where a unit of a duration is not the longest one, and is as much as a longer one: `68s` in `5m68s`.
@@ -217,12 +232,14 @@ pub fn type_of_prefix(prefix: &str) -> Option<Elementary> {
     short.or_else(|| Elementary::named(prefix)).filter(|it| it.is_time())
 }
 
-/// The value of a literal of a duration, a date or a time of day: what follows its `#`.
+/// The value of a literal of a duration, a date or a time of day: what follows its `#`. Of an
+/// [LTIME without a sign](Elementary::Ultime) it is the bits.
 pub fn time(ty: Elementary, text: &str) -> Result<Time, LiteralError> {
     match ty {
         Elementary::Date | Elementary::Ldate => date(text),
         Elementary::Tod | Elementary::Ltod => time_of_day(text),
         Elementary::Dt | Elementary::Ldt => date_and_time(text),
+        Elementary::Ultime => unsigned_duration(text).map(|it| it as i64),
         _ => duration(text),
     }
 }

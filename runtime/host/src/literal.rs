@@ -2,7 +2,7 @@
 
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
-use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration};
+use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration, unsigned_duration};
 use staunch_runtime::{Elementary, Repr, StringType, Value, ops};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
@@ -10,6 +10,7 @@ pub fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     let value = match place.ty {
         Type::String(it) => return string(text, it),
         Type::Characters(it) => return string(text, it).map(|it| without_length(it, map.size_of(place.ty))),
+        Type::Elementary(Elementary::Ultime) => Value::U64(unsigned_time(text)?),
         Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
         Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Value::Bool(boolean(text)?),
@@ -99,13 +100,22 @@ fn boolean(text: &str) -> Result<bool, String> {
 }
 
 pub(crate) fn time(text: &str) -> Result<i64, String> {
-    let Some((prefix, rest)) = text.split_once('#') else {
-        return Err(format!("`{text}` is not a TIME: write `T#500ms`"));
-    };
-    if !["T", "TIME", "LT", "LTIME"].iter().any(|it| same(it, prefix)) {
-        return Err(format!("`{text}` is not a TIME: write `T#500ms`"));
-    }
-    duration(rest).map_err(|error| format!("`{text}` is not a TIME: {}", error.kind.text()))
+    duration(after_prefix(text)?).map_err(|error| not_a_time(text, error.kind.text()))
+}
+
+/// An LTIME without a sign.
+fn unsigned_time(text: &str) -> Result<u64, String> {
+    unsigned_duration(after_prefix(text)?).map_err(|error| not_a_time(text, error.kind.text()))
+}
+
+fn after_prefix(text: &str) -> Result<&str, String> {
+    let parts = text.split_once('#');
+    let is_prefix = |it: &str| ["T", "TIME", "LT", "LTIME"].iter().any(|prefix| same(prefix, it));
+    parts.filter(|it| is_prefix(it.0)).map(|it| it.1).ok_or_else(|| not_a_time(text, "write `T#500ms`"))
+}
+
+fn not_a_time(text: &str, why: &str) -> String {
+    format!("`{text}` is not a TIME: {why}")
 }
 
 /// A date or a time of day, with the prefix of its type or of the long form of it.

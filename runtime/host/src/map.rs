@@ -498,6 +498,6 @@ fn type_named(text: &str) -> Option<Type> {
         Some(("block", id)) => Some(Type::Block(id.parse().ok()?)),
         Some(_) => None,
         None if text == "REFERENCE" => Some(Type::Reference),
-        None => Elementary::named(text).map(Type::Elementary),
+        None => Elementary::by_own_name(text).map(Type::Elementary),
     }
 }

@@ -23,6 +23,7 @@ pub(crate) fn format(map: &Map, ty: Type, bytes: &[u8], out: &mut String) {
             match value {
                 // Writing to a String cannot fail.
                 Value::I64(time) if it.is_time() => _ = format::time(out, it, time),
+                Value::U64(time) if it.is_time() => _ = format::time(out, it, time as i64),
                 _ if it.is_char() => out.push_str(&format_character(value)),
                 _ => format_scalar(value, out),
             }

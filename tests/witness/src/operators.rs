@@ -163,6 +163,9 @@ impl<'a> Machine<'a> {
 
     /// What CODESYS and S7 keep of a TIME.
     pub(crate) fn kept(&self, value: Value<'a>) -> Outcome<Value<'a>> {
+        if value.ty.elementary() == Some(Elementary::Ltime) && self.is_codesys() && value.as_integer()? < 0 {
+            return unknown("an LTIME of CODESYS beyond 292 years");
+        }
         if value.ty.elementary() != Some(Elementary::Time) || !self.counts_milliseconds() {
             return Ok(value);
         }

@@ -112,6 +112,25 @@ END_PROGRAM
     assert_eq!(code, Some(0), "{text}");
 }
 
+/// An LTIME of CODESYS has no sign; those that both systems have are tried.
+#[test]
+fn an_ltime_of_codesys_has_no_sign() {
+    let no_run = OWN.written("unsigned_ltime.txt", "no run\n");
+    let arguments = ["--from", "iec", "--to", "codesys", "--assume", no_run.as_str()];
+    let source = "PROGRAM p
+VAR_INPUT on : BOOL; a : LTIME; END_VAR
+VAR_OUTPUT late : BOOL; END_VAR
+VAR d : LTIME; END_VAR
+d := a - LTIME#1s;
+late := on AND d > LTIME#2s;
+END_PROGRAM
+";
+    let (code, text) = OWN.compare("unsigned_ltime", source, &arguments);
+    assert_eq!(code, Some(1), "{text}");
+    let (code, text) = OWN.compare("equal_ltime", &source.replace("a - LTIME#1s", "a"), &arguments);
+    assert_eq!(code, Some(0), "{text}");
+}
+
 /// Where the first difference needs STOP -> RUN, which most programs from CODESYS have, the next one is shown as well.
 #[test]
 fn the_search_goes_on_past_stop_to_run() {

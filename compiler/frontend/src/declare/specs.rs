@@ -291,7 +291,9 @@ impl<'s> Declarations<'s> {
 
     fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
         if let Some(elementary) = Elementary::named(name.text) {
-            let initial = scalar_initial(self.dialect(name.span).rules().first_value(elementary));
+            let rules = self.dialect(name.span).rules();
+            let elementary = rules.own(elementary);
+            let initial = scalar_initial(rules.first_value(elementary));
             return Some(Resolved { ty: Type::Elementary(elementary), initial });
         }
         match self.lookup(&[name], Sense::Type) {

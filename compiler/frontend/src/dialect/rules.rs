@@ -11,8 +11,8 @@ use super::Dialect;
 use choice::Choice;
 pub use choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
+    LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
+    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 pub use followed::{Followed, Rules};
 pub use not_followed::{EDGES, Edge, NOT_FOLLOWED, NotFollowed, is_followed, otherwise};
@@ -69,6 +69,7 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.case_selector),
         row(|it| &it.loop_limit),
         row(|it| &it.time_unit),
+        row(|it| &it.long_time),
     ]
 }
 

@@ -29,7 +29,7 @@ pub(crate) fn class_of(ty: Type) -> (u32, &'static str) {
             Elementary::Dt => (20, "DATEANDTIME"),
             Elementary::Tod => (21, "TIMEOFDAY"),
             Elementary::Char | Elementary::Wchar => (29, "NONE"),
-            Elementary::Ltime => (37, "LTIME"),
+            Elementary::Ltime | Elementary::Ultime => (37, "LTIME"),
             Elementary::Ldate => (46, "LDATE"),
             Elementary::Ldt => (47, "LDATEANDTIME"),
             Elementary::Ltod => (48, "LTIMEOFDAY"),

@@ -125,6 +125,9 @@ impl<'s> Checker<'_, 's> {
         match (expr.ty, to) {
             (_, Type::Reference(id)) => self.coerce_reference(expr, id, span),
             (Type::Reference(_), Type::Elementary(into)) => self.address_as(expr, into, span),
+            (Type::Elementary(Elementary::Ultime), Type::Elementary(Elementary::Ltime)) => {
+                self.signed_duration(expr, span)
+            }
             (Type::Elementary(from), Type::Elementary(into)) => {
                 self.may_become(from, into, span).then(|| self.number_as(expr, into, span))?
             }

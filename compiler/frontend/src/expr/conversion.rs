@@ -17,7 +17,10 @@ impl<'s> Checker<'_, 's> {
         name: ast::Name<'s>,
     ) -> Option<Expr> {
         let value_expr = match parsed.from {
-            Some(Converted::Elementary(from)) => self.value_converted(value, from)?,
+            Some(Converted::Elementary(from)) => {
+                let from = self.decl.dialect(name.span).rules().own(from);
+                self.value_converted(value, from)?
+            }
             Some(Converted::Text { wide }) => self.text(value, Some(wide), name)?,
             None if self.is_character(value, parsed.to) => self.value(value, Type::Elementary(Elementary::Char))?,
             None => {
@@ -26,7 +29,7 @@ impl<'s> Checker<'_, 's> {
             }
         };
         let to = match parsed.to {
-            Converted::Elementary(to) => to,
+            Converted::Elementary(to) => self.decl.dialect(name.span).rules().own(to),
             Converted::Text { wide } => return self.text_of(value_expr, wide, value.span, name),
         };
         match parsed.how {
@@ -112,9 +115,12 @@ impl<'s> Checker<'_, 's> {
             return self.character_and_number(value, from, to, span);
         }
         match (from.counted_in(), to.counted_in()) {
-            (Some(_), Some(_)) if is_the_same(from, to) && (from == to || to != Elementary::Time) => Some(self.convert(Conversion::Same, target, value)),
+            (Some(_), Some(_)) if is_the_same(from, to) && (from == to || to != Elementary::Time) => {
+                Some(self.retyped(value, target))
+            }
+            (Some(_), Some(_)) if from == Elementary::Ultime && to == Elementary::Time => self.shortened(value, span),
             (Some(_), Some(_)) => {
-                let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+                let nanoseconds = self.retyped(value, Type::LINT);
                 self.as_time(nanoseconds, to, span)
             }
             (None, None) if to == Elementary::Bool && from.is_real() && rules.rounds_by_c() => {
@@ -140,11 +146,15 @@ impl<'s> Checker<'_, 's> {
             (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
             (Some(unit), None) => {
                 let (unit, since) = self.counted_by(from, unit, span);
-                let nanoseconds = self.convert(Conversion::Same, Type::LINT, value);
+                let nanoseconds = self.nanoseconds_of(value);
                 let nanoseconds = self.since_epoch(Op::Sub, nanoseconds, since, span)?;
                 let real = to.is_real() && rules.time_as_number.choice != TimeAsNumber::CutMilliseconds;
                 let count = self.scaled_by(Op::Div, nanoseconds, unit, real, span)?;
                 Some(self.convert(Conversion::Value, target, count))
+            }
+            (None, Some(_)) if to == Elementary::Ultime => {
+                let nanoseconds = self.number_as(value, Elementary::Ulint, span)?;
+                Some(self.convert(Conversion::Same, target, nanoseconds))
             }
             (None, Some(unit)) => {
                 let (unit, since) = self.counts_from(to, unit, span);

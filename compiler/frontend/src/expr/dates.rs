@@ -17,10 +17,11 @@ impl<'s> Checker<'_, 's> {
             self.report_operands(&sides, "a TIME is added to a TOD or DT; two of a kind are subtracted");
             return None;
         };
+        let result = self.decl.dialect(sides.span).rules().own(result);
         let (op, op_span, span) = (arithmetic_op(sides.op), sides.op_span, sides.span);
         let mut number = |operand, span| {
             let value = self.side(operand, Elementary::Lint, span)?;
-            Some(self.convert(Conversion::Same, Type::LINT, value))
+            Some(self.retyped(value, Type::LINT))
         };
         let (a, b) = (number(sides.a, sides.left)?, number(sides.b, sides.right)?);
         if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
@@ -51,7 +52,7 @@ impl<'s> Checker<'_, 's> {
             Some(op) => self.apply(op, Type::LINT, vec![nanoseconds], Type::LINT, span)?,
             None => nanoseconds,
         };
-        let settled = self.convert(Conversion::Same, Type::Elementary(to), settled);
+        let settled = self.retyped(settled, Type::Elementary(to));
         self.kept_duration(settled, span)
     }
 

@@ -7,6 +7,7 @@ use crate::dialect::rules::TimeAsNumber;
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
 use staunch_runtime::Time;
+use staunch_runtime::literal::LiteralErrorKind;
 use staunch_runtime::time::MILLISECOND;
 
 const REAL: Type = Type::Elementary(Elementary::Real);
@@ -87,7 +88,7 @@ impl Checker<'_, '_> {
         if let (Some(Value::I64(a)), Some(Value::I64(b)), Op::Mul) = (time.as_const(), count.as_const(), op) {
             self.refuse_time_overflow(a.checked_mul(b).is_none(), sides.span)?;
         }
-        let count = self.convert(Conversion::Same, ty, count);
+        let count = self.retyped(count, ty);
         self.apply(op, ty, vec![time, count], ty, op_span)
     }
 
@@ -99,14 +100,15 @@ impl Checker<'_, '_> {
         let computed = if at_real { Elementary::Real } else { Elementary::Lreal };
         let factor = self.side(sides.b, computed, sides.right)?;
         let computed = Type::Elementary(computed);
-        let lint = self.convert(Conversion::Same, Type::LINT, time);
-        let time = self.convert(Conversion::Value, computed, lint);
+        let number = self.nanoseconds_of(time);
+        let counted = number.ty;
+        let time = self.convert(Conversion::Value, computed, number);
         let scaled = self.apply(op, computed, vec![time, factor], computed, op_span)?;
-        let lint = match cuts {
+        let number = match cuts {
             true => self.apply(Op::TruncLint, computed, vec![scaled], Type::LINT, op_span)?,
-            false => self.convert(Conversion::Value, Type::LINT, scaled),
+            false => self.convert(Conversion::Value, counted, scaled),
         };
-        let scaled = self.convert(Conversion::Same, ty, lint);
+        let scaled = self.convert(Conversion::Same, ty, number);
         self.kept_duration(scaled, op_span)
     }
 
@@ -118,6 +120,76 @@ impl Checker<'_, '_> {
         let nanoseconds = self.convert(Conversion::Same, Type::LINT, duration);
         let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, span)?;
         self.time_of_milliseconds(milliseconds, span)
+    }
+
+    /// The same bits as another type.
+    pub(super) fn retyped(&mut self, value: Expr, ty: Type) -> Expr {
+        let program = &self.decl.program;
+        let how = if program.repr(value.ty) == program.repr(ty) { Conversion::Same } else { Conversion::Value };
+        self.convert(how, ty, value)
+    }
+
+    /// The number of nanoseconds that a TIME or a point in time is.
+    pub(super) fn nanoseconds_of(&mut self, time: Expr) -> Expr {
+        let number = time.ty.elementary().map_or(Elementary::Lint, |it| Elementary::number(it.repr()));
+        self.convert(Conversion::Same, Type::Elementary(number), time)
+    }
+
+    /// An LTIME without a sign as a TIME.
+    pub(super) fn shortened(&mut self, long: Expr, span: Span) -> Option<Expr> {
+        let nanoseconds = self.nanoseconds_of(long);
+        let millisecond = Expr::constant(Elementary::Ulint, Value::U64(MILLISECOND.unsigned_abs()), nanoseconds.at);
+        let ulint = nanoseconds.ty;
+        let milliseconds = self.apply(Op::Div, ulint, vec![nanoseconds, millisecond], ulint, span)?;
+        let milliseconds = self.convert(Conversion::Value, Type::LINT, milliseconds);
+        self.time_of_milliseconds(milliseconds, span)
+    }
+
+    /// An LTIME without a sign where one with a sign is taken, as the preset of a timer: 292 years at most.
+    pub(super) fn signed_duration(&mut self, long: Expr, span: Span) -> Option<Expr> {
+        let nanoseconds = self.nanoseconds_of(long);
+        let greatest = Expr::constant(Elementary::Ulint, Value::U64(Time::MAX.unsigned_abs()), nanoseconds.at);
+        let ulint = nanoseconds.ty;
+        let held = self.apply(Op::Min, ulint, vec![nanoseconds, greatest], ulint, span)?;
+        Some(self.convert(Conversion::Value, Type::Elementary(Elementary::Ltime), held))
+    }
+
+    /// What is as far below nothing as a duration is above it.
+    pub(super) fn negative_duration(&mut self, duration: Expr, span: Span) -> Option<Expr> {
+        let ty = duration.ty;
+        if ty != Type::Elementary(Elementary::Ultime) {
+            let negative = self.apply(Op::Neg, ty, vec![duration], ty, span)?;
+            return self.kept_duration(negative, span);
+        }
+        let nothing = Expr::constant(Elementary::Ultime, Value::U64(0), duration.at);
+        self.apply(Op::Sub, ty, vec![nothing, duration], ty, span)
+    }
+
+    /// A literal of a duration, as the dialect keeps it.
+    pub(super) fn duration_literal(
+        &mut self,
+        ty: Elementary,
+        nanoseconds: Time,
+        span: Span,
+    ) -> Option<(Elementary, Value)> {
+        let kept = self.decl.dialect(span).rules().own(ty);
+        match (ty, kept) {
+            (Elementary::Time, _) => self.refuse_unkept(nanoseconds, span)?,
+            (Elementary::Ltime, Elementary::Ultime) if nanoseconds < 0 => {
+                let message = format!("`{}` does not fit LTIME", self.decl.log.sources.text(span));
+                let range = "LTIME holds LTIME#0ns to LTIME#213503d23h34m33s709ms551us615ns in this dialect";
+                self.report(Diagnostic::new(Code::E0202, span, message).label(range));
+                return None;
+            }
+            (Elementary::Ultime, _) if self.decl.dialect(span).rules().own(Elementary::Ltime) != kept => {
+                self.error(Code::E0006, span, LiteralErrorKind::DurationTooLong.text());
+                return None;
+            }
+            _ => {}
+        }
+        let value =
+            if kept == Elementary::Ultime { Value::U64(nanoseconds.cast_unsigned()) } else { Value::I64(nanoseconds) };
+        Some((kept, value))
     }
 
     /// A LINT of milliseconds as a TIME: what the dialect does not keep of it is cut off above.

@@ -235,8 +235,10 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let value = self.apply(Op::Neg, ty, vec![value], ty, span)?;
-        let value = self.kept_duration(value, span)?;
+        let value = match ty {
+            Type::Elementary(it) if it.is_duration() => self.negative_duration(value, span)?,
+            _ => self.apply(Op::Neg, ty, vec![value], ty, span)?,
+        };
         Some(computed(value, own))
     }
 

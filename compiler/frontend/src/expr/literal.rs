@@ -39,13 +39,12 @@ impl<'s> Checker<'_, 's> {
             }
             LiteralValue::Real(digits) => Some(Operand::Real { number: Real::Literal(digits.to_string()) }),
             LiteralValue::Time { ty, nanoseconds } => {
-                if ty.is_duration() {
-                    self.lower_units(*ty, *nanoseconds, span)?;
+                if !ty.is_duration() {
+                    return typed(*ty, Value::I64(*nanoseconds));
                 }
-                if *ty == Elementary::Time {
-                    self.refuse_unkept(*nanoseconds, span)?;
-                }
-                typed(*ty, Value::I64(*nanoseconds))
+                let (kept, value) = self.duration_literal(*ty, *nanoseconds, span)?;
+                self.lower_units(*ty, *nanoseconds, span)?;
+                typed(kept, value)
             }
             LiteralValue::String(chars) => Some(self.string_literal(chars, span)),
             LiteralValue::Error => None,

@@ -7,6 +7,7 @@ use super::checker::Checker;
 use super::operand::Operand;
 use super::operator::{beside, literal_types};
 use crate::dialect::Dialect;
+use crate::dialect::rules::Rules;
 use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Block, Conversion, Elementary, Expr, Section, Type};
@@ -35,10 +36,10 @@ pub(crate) enum Takes {
 }
 
 impl Takes {
-    pub(super) fn of(kind: Kind, common: Option<Type>) -> Self {
+    pub(super) fn of(kind: Kind, common: Option<Type>, rules: &Rules) -> Self {
         match kind {
             Kind::T => Self::Common(common),
-            Kind::Is(ty) => Self::Type(Type::Elementary(ty)),
+            Kind::Is(ty) => Self::Type(Type::Elementary(rules.own(ty))),
             Kind::Any(class) => Self::Class(class),
             Kind::String => Self::Text(Some(false)),
             Kind::Wstring => Self::Text(Some(true)),
@@ -101,7 +102,7 @@ impl<'s> Checker<'_, 's> {
         let hint = expected
             .filter(|it| signature.result == Kind::T && self.admits_operand(signature.class, *it, name.span, name));
         let evaluate = |this: &mut Self, at: usize, side: Option<Type>| {
-            let takes = Takes::of(kind(signature, at), hint.or(side));
+            let takes = Takes::of(kind(signature, at), hint.or(side), this.decl.dialect(name.span).rules());
             this.taken(takes, values[at], &parameter_name(signature, at), name)
         };
         let operands = match before.as_deref_mut() {

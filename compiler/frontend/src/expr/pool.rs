@@ -248,7 +248,10 @@ impl<'s> Checker<'_, 's> {
     fn type_of_path(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
         let path = named.path()?;
         match path.as_slice() {
-            [name] => Elementary::named(name.text).map(Type::Elementary).or_else(|| self.decl.type_of_name(*name)),
+            [name] => match Elementary::named(name.text) {
+                Some(ty) => Some(Type::Elementary(self.decl.dialect(name.span).rules().own(ty))),
+                None => self.decl.type_of_name(*name),
+            },
             path => self.decl.type_of_path(path),
         }
     }

@@ -339,7 +339,7 @@ impl<'s> Checker<'_, 's> {
         if let [name] = path.as_slice()
             && let Some(elementary) = Elementary::named(name.text)
         {
-            return Some(Some(Type::Elementary(elementary)));
+            return Some(Some(Type::Elementary(self.decl.dialect(name.span).rules().own(elementary))));
         }
         let is_value = path.len() > 1
             && matches!(

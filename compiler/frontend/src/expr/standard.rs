@@ -29,9 +29,10 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Operand> {
         let Some((signature, meaning)) = self.form(name, arguments) else {
             if let Some((signature, meaning, ty)) = functions::typed(name.text) {
-                let values = self.arguments(signature, name, arguments, span)?;
+                let (values, rules) =
+                    (self.arguments(signature, name, arguments, span)?, self.decl.dialect(span).rules());
                 self.note_use(Use::Function(signature.name), name.span);
-                return self.typed_function(signature, meaning, Type::Elementary(ty), &values, name);
+                return self.typed_function(signature, meaning, Type::Elementary(rules.own(ty)), &values, name);
             }
             let parsed = functions::conversion(name.text)?;
             let values = self.arguments(&CONVERSION, name, arguments, span)?;
@@ -130,7 +131,7 @@ impl<'s> Checker<'_, 's> {
         let (block, at) = (self.temporary("clock", Type::Block(id)), self.at(span));
         self.push(StatementKind::CallBlock { block: block.clone(), instruction: 0, inputs: Vec::new() }, span);
         let now = Expr::load(pin_place(block, id, "NOW"), at);
-        let now = self.convert(Conversion::Same, Type::Elementary(ty), now);
+        let now = self.retyped(now, Type::Elementary(self.decl.dialect(span).rules().own(ty)));
         self.kept_duration(now, span)
     }
 

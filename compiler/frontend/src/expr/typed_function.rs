@@ -22,7 +22,7 @@ impl<'s> Checker<'_, 's> {
         let operands = self.as_written(values, |this, at, _| {
             let takes = match kind(signature, at) {
                 Kind::T => Takes::Type(ty),
-                other => Takes::of(other, None),
+                other => Takes::of(other, None, this.decl.dialect(name.span).rules()),
             };
             let operand = this.taken(takes, values[at], &parameter_name(signature, at), name)?;
             Some(if compared { this.kept_between(operand, at, values.len()) } else { operand })

@@ -36,7 +36,7 @@ pub fn real(text: &str) -> Result<String, Fault> {
     Ok(text.chars().filter(|it| *it != '_').collect())
 }
 
-/// `T#-1h30m`, `LTIME#1.5s`: the type, and nanoseconds.
+/// `T#-1h30m`, `LTIME#1.5s`: the type, and nanoseconds; one without a sign where that alone holds it.
 pub fn duration(text: &str) -> Result<(Elementary, i64), Fault> {
     let is_long = text.starts_with(['l', 'L']);
     time(text, if is_long { Elementary::Ltime } else { Elementary::Time })
@@ -51,7 +51,14 @@ pub fn date(text: &str) -> Result<(Elementary, i64), Fault> {
 fn time(text: &str, ty: Elementary) -> Result<(Elementary, i64), Fault> {
     let value = text.split_once('#').map_or(text, |it| it.1);
     let first = text.len() - value.len();
-    literal::time(ty, value).map(|it| (ty, it)).map_err(|error| fault(text, first, error))
+    let read = |ty| literal::time(ty, value).map(|it| (ty, it));
+    let found = match read(ty) {
+        Err(error) if ty == Elementary::Ltime && error.kind == Kind::DurationTooLong => {
+            read(Elementary::Ultime).map_err(|_| error)
+        }
+        found => found,
+    };
+    found.map_err(|error| fault(text, first, error))
 }
 
 /// The sentence about what is wrong in `text`, in the part of it that starts at `first`.
@@ -72,6 +79,7 @@ fn fault(text: &str, first: usize, error: LiteralError) -> Fault {
         | Kind::NoNumber
         | Kind::NoUnit
         | Kind::DurationTooLong
+        | Kind::UnsignedDuration
         | Kind::DateForm
         | Kind::TimeOfDayForm
         | Kind::DateAndTimeForm
@@ -89,7 +97,12 @@ fn fault(text: &str, first: usize, error: LiteralError) -> Fault {
 fn is_of_all(kind: Kind) -> bool {
     matches!(
         kind,
-        Kind::DurationTooLong | Kind::DateForm | Kind::TimeOfDayForm | Kind::DateAndTimeForm | Kind::DateTooFar
+        Kind::DurationTooLong
+            | Kind::UnsignedDuration
+            | Kind::DateForm
+            | Kind::TimeOfDayForm
+            | Kind::DateAndTimeForm
+            | Kind::DateTooFar
     )
 }
 
@@ -119,6 +132,7 @@ fn meant(text: &str, first: usize, kind: Kind) -> Option<String> {
         | Kind::UnknownUnit
         | Kind::UnitOrder
         | Kind::DurationTooLong
+        | Kind::UnsignedDuration
         | Kind::DateForm
         | Kind::TimeOfDayForm
         | Kind::DateAndTimeForm

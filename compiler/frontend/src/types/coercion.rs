@@ -27,8 +27,10 @@ pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
 }
 
 /// Each type of 64 bits with the one that the standard has for fewer.
-const LONG_FORMS: [(Elementary, Elementary); 4] = [
+const LONG_FORMS: [(Elementary, Elementary); 6] = [
     (Elementary::Time, Elementary::Ltime),
+    (Elementary::Time, Elementary::Ultime),
+    (Elementary::Ltime, Elementary::Ultime),
     (Elementary::Date, Elementary::Ldate),
     (Elementary::Tod, Elementary::Ltod),
     (Elementary::Dt, Elementary::Ldt),

@@ -159,7 +159,7 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
         }
         let repr = pair.sides[0].program.repr(a.ty)?;
         // Two programs number their types for themselves.
-        (pair.sides[1].program.repr(b.ty)? == repr).then(|| Input {
+        (pair.sides[1].program.repr(b.ty)? == repr || are_long_times(a.ty, b.ty)).then(|| Input {
             scalars,
             initial: Value::read(repr, bytes),
             texts: Vec::new(),
@@ -260,7 +260,7 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input, assumed: Numbers) -> C
     for (facts, name) in facts.iter().zip(names) {
         near.add_all(name.map(|it| facts.worth_trying(it)).unwrap_or_default());
     }
-    let times = times_of_both(pair, scalars[0].ty);
+    let times = times_of_both(pair, scalars.map(|it| it.ty));
     let (values, all) = values(program, scalars[0].ty, &near, times);
     let range = |side: usize| pair.sides[side].program.range(scalars[side].ty);
     let covered = if all && range(0) == range(1) {
@@ -290,8 +290,17 @@ struct Range {
     step: i128,
 }
 
-/// Of a TIME, in nanoseconds: those that both systems have.
-fn times_of_both(pair: &Pair, ty: Type) -> Option<Range> {
+/// LTIMEs, of which one has no sign.
+fn are_long_times(a: Type, b: Type) -> bool {
+    let is_long = |ty: Type| matches!(ty, Type::Elementary(Elementary::Ltime | Elementary::Ultime));
+    is_long(a) && is_long(b)
+}
+
+/// Of a TIME or an LTIME, in nanoseconds: those that both systems have.
+fn times_of_both(pair: &Pair, [ty, other]: [Type; 2]) -> Option<Range> {
+    if ty != other && are_long_times(ty, other) {
+        return Some(Range { low: 0, high: i128::from(i64::MAX), step: 1 });
+    }
     let counts = pair.sides.iter().filter_map(|it| it.dialect.rules().milliseconds()?.repr().range());
     let (low, high) = counts.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1))).filter(|_| ty == Type::TIME)?;
     let step = i128::from(MILLISECOND);

@@ -74,6 +74,9 @@ pub fn spell(program: &Program, ty: Type, value: Value) -> String {
         (None, Value::I64(time)) if let Some(ty) = ty.elementary().filter(|it| it.is_time()) => {
             staunch_host::format_time_as(ty, time)
         }
+        (None, Value::U64(time)) if let Some(ty) = ty.elementary().filter(|it| it.is_time()) => {
+            staunch_host::format_time_as(ty, time.cast_signed())
+        }
         (None, other) if ty.elementary().is_some_and(staunch_ir::Elementary::is_char) => {
             staunch_host::format_character(other)
         }

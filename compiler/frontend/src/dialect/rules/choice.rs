@@ -481,6 +481,26 @@ impl Choice for TimeUnit {
     }
 }
 
+/// What an LTIME is a number of. What is computed beyond that number wraps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LongTime {
+    Signed,
+    Unsigned,
+}
+
+impl Choice for LongTime {
+    const RULE: &'static str = "what an LTIME is";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Signed => "64 bits of nanoseconds with a sign",
+            Self::Unsigned => {
+                "64 bits of nanoseconds without a sign: none is less than `LTIME#0ns`, and the greatest is `LTIME#213503d23h34m33s709ms551us615ns`"
+            }
+        }
+    }
+}
+
 /// When FOR looks at its limit and its step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoopLimit {

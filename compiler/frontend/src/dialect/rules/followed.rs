@@ -2,8 +2,8 @@
 
 use super::choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
+    LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
+    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 use staunch_runtime::{Elementary, Value};
 
@@ -36,6 +36,7 @@ pub struct Rules {
     pub case_selector: Followed<CaseSelector>,
     pub loop_limit: Followed<LoopLimit>,
     pub time_unit: Followed<TimeUnit>,
+    pub long_time: Followed<LongTime>,
 }
 
 impl Rules {
@@ -142,6 +143,14 @@ impl Rules {
     /// The value that CASE selects by is cut to the type that it counts as.
     pub const fn cuts_selectors(&self) -> bool {
         matches!(self.case_selector.choice, CaseSelector::Cut)
+    }
+
+    /// The type that an elementary type's name means.
+    pub const fn own(&self, ty: Elementary) -> Elementary {
+        match (ty, self.long_time.choice) {
+            (Elementary::Ltime, LongTime::Unsigned) => Elementary::Ultime,
+            _ => ty,
+        }
     }
 
     /// The integer type whose number of milliseconds a TIME is, where it is not of nanoseconds.

@@ -1,6 +1,6 @@
 //! What is known of a system and not followed, and what its documents leave open.
 
-use super::systems::{CODESYS_TIMES, MATIEC, SIEMENS_DATES};
+use super::systems::{MATIEC, SIEMENS_DATES};
 use crate::dialect::Dialect;
 use staunch_ir::{Part, Use};
 use staunch_runtime::{Class, Elementary};
@@ -28,12 +28,6 @@ pub fn otherwise(dialect: Dialect, part: Part) -> Option<&'static NotFollowed> {
 
 /// The rules that are known, and not followed: a DATE, TOD or DT is 64 bits of nanoseconds in every dialect.
 pub const NOT_FOLLOWED: &[NotFollowed] = &[
-    not_followed(
-        Dialect::Codesys,
-        Elementary::Ltime,
-        "64 bits of nanoseconds without a sign: less than `LTIME#0ns` wraps, and it reaches to twice what it reaches to here",
-        CODESYS_TIMES,
-    ),
     not_followed(Dialect::Codesys, Elementary::Date, "32 bits of seconds since 1970: it ends in 2106", CODESYS_DATES),
     not_followed(
         Dialect::Codesys,

@@ -2,8 +2,8 @@
 
 use super::choice::{
     ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText,
-    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
+    LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
+    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 use super::followed::{Followed, Rules};
 
@@ -34,6 +34,7 @@ pub(super) const IEC: Rules = Rules {
     case_selector: follows(CaseSelector::AsComputed, "IEC 61131-3, table 72"),
     loop_limit: follows(LoopLimit::Once, "IEC 61131-3, 7.3.3.4.2: the body changes none of them"),
     time_unit: follows(TimeUnit::Nanoseconds, "IEC 61131-3, 6.3.3.2: left to the implementer"),
+    long_time: follows(LongTime::Signed, "IEC 61131-3, table 10: 64 bits of nanoseconds"),
 };
 
 /// The choice of another dialect, where no page of the vendor says anything.
@@ -68,6 +69,7 @@ pub(super) const CSCAPE: Rules = Rules {
     case_selector: undocumented(IEC.case_selector),
     loop_limit: undocumented(IEC.loop_limit),
     time_unit: undocumented(IEC.time_unit),
+    long_time: undocumented(IEC.long_time),
 };
 
 pub(super) const CODESYS: Rules = Rules {
@@ -89,6 +91,7 @@ pub(super) const CODESYS: Rules = Rules {
         "CODESYS help and Beckhoff, \"Typed Literals\": the smallest possible data type",
     ),
     time_unit: follows(TimeUnit::Milliseconds, CODESYS_TIMES),
+    long_time: follows(LongTime::Unsigned, CODESYS_TIMES),
     ..IEC
 };
 
