@@ -181,6 +181,7 @@ codes! {
     W0524 Warning "immediate values give more than a DINT holds";
     W0525 Warning "a lower unit of a TIME overflows";
     W0526 Warning "a body reads its own EN";
+    W0527 Warning "a check that CODESYS calls by itself";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";

@@ -1,5 +1,6 @@
 //! What is right, and was hardly meant.
 
+pub(crate) mod checks;
 pub(crate) mod hides;
 pub(crate) mod result;
 pub(crate) mod unused;
