@@ -19,6 +19,7 @@ mod loop_state;
 
 mod attempt;
 mod constant;
+mod counted;
 mod expression;
 mod external;
 mod firmware;
