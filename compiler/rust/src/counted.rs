@@ -62,7 +62,7 @@ impl Function<'_> {
 
     fn may_fault(&self, statement: &Statement) -> bool {
         let checked = vec![false; self.routine.locals.len()];
-        statement_faults(self.emitter.program, &RULES, self.routine, (Vec::new(), checked), statement)
+        statement_faults(self.emitter.program, &RULES, &[], self.routine, (Vec::new(), checked), statement)
     }
 }
 
