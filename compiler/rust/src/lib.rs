@@ -18,6 +18,7 @@ mod expected;
 mod loop_state;
 
 mod attempt;
+mod byte_copy;
 mod constant;
 mod counted;
 mod expression;

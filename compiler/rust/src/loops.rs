@@ -40,6 +40,9 @@ impl Function<'_> {
     }
 
     pub fn for_loop(&mut self, statement: &Statement, it: &For) -> TokenStream {
+        if let Some(copied) = self.copied(statement, it) {
+            return copied;
+        }
         let first = self.expr(&it.first).tokens;
         let first = self.assigned(statement, &it.counter, first);
         if let Some(counted) = self.counted(it) {
