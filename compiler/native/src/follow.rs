@@ -386,11 +386,11 @@ impl Function<'_, '_> {
 
     /// As `ops::advance` does it.
     pub(crate) fn advanced(&mut self, reference: clif::Value, distance: clif::Value) -> clif::Value {
-        let [low, by] = [reference, distance].map(|it| self.ins().ireduce(types::I32, it));
-        let low = self.ins().iadd(low, by);
+        let moved = self.ins().iadd(reference, distance);
+        let low = self.ins().ireduce(types::I32, moved);
         let low = self.ins().uextend(types::I64, low);
-        let upper = self.ins().iconst(types::I64, !i64::from(u32::MAX));
-        let high = self.ins().band(reference, upper);
+        let high = self.ins().ushr_imm_u(reference, 32);
+        let high = self.ins().ishl_imm_u(high, 32);
         self.ins().bor(low, high)
     }
 }

@@ -213,10 +213,7 @@ fn shift(f: &mut Function<'_, '_>, o: &Operands, by: fn(&mut Function<'_, '_>, C
 fn advance(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (value, distance) = (o.values[0], o.values[1]);
     let ty = clif_type(o.repr);
-    if ty == types::I64 {
-        return f.advanced(value, distance);
-    }
-    let distance = f.ins().ireduce(ty, distance);
+    let distance = if ty == types::I64 { distance } else { f.ins().ireduce(ty, distance) };
     let moved = f.ins().iadd(value, distance);
     let changed = f.ins().bxor(value, moved);
     let lower = f.integer(ty, (1 << (ty.bits() / 2)) - 1);

@@ -83,3 +83,84 @@ fn together(memory: &(impl Memory + ?Sized), target: &Run, source: &Run, length:
     }
     length
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::reference::{ORIGIN, Reference, encode};
+    use core::array::from_fn;
+    use core::cell::Cell;
+
+    const SIZE: usize = 200;
+
+    /// One object: 100 numbers, a BOOL, three bytes of no variable, and 96 numbers.
+    const WORDS: [u32; 30] = [
+        1,
+        8,
+        30, // one object; its node is the state's; so many words
+        0,
+        200,
+        0,
+        0,
+        8, // from where, how large, not plain, always there
+        encode::STRUCTURE,
+        200,
+        1,
+        3,
+        0,
+        18,
+        100,
+        22,
+        104,
+        26, // the members
+        encode::NUMBERS,
+        100,
+        0,
+        0,
+        encode::TRUTHS,
+        1,
+        0,
+        0,
+        encode::NUMBERS,
+        96,
+        0,
+        0,
+    ];
+
+    fn one_by_one(
+        table: &Table<'_>,
+        memory: &[Cell<u8>],
+        way: [u64; 2],
+        count: i64,
+        step: i64,
+    ) -> Result<(), FaultKind> {
+        let [mut to, mut from] = way;
+        for _ in 0..count {
+            let mut byte = [0];
+            table.load_bytes(memory, from, 0, BYTE, &mut byte)?;
+            table.store_bytes(memory, to, 0, BYTE, &byte)?;
+            (to, from) = (ops::advance(to, step), ops::advance(from, step));
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn bytes_go_as_if_one_by_one() {
+        let table = Table::new(&WORDS);
+        let at = |position: u32| Reference { object: 1, address: ORIGIN + position }.bits();
+        let places = [0, 1, 2, 60, 98, 99, 100, 101, 103, 104, 107, 150, 199, 200];
+        for way in places.iter().flat_map(|to| places.map(|from| [at(*to), at(from)])) {
+            for (count, step) in
+                [0, 1, 3, 40, 90, 200].into_iter().flat_map(|count| [-2, -1, 0, 1, 2].map(|it| (count, it)))
+            {
+                let [all, each]: [[Cell<u8>; SIZE]; 2] = from_fn(|_| from_fn(|at| Cell::new(at as u8)));
+                let [whole, ends] = [
+                    table.copy(all.as_slice(), way[0], way[1], count, step),
+                    one_by_one(&table, &each, way, count, step),
+                ];
+                assert_eq!((whole, &all), (ends, &each), "{way:x?} {count} {step}");
+            }
+        }
+        assert_eq!(table.copy([].as_slice(), 0, at(0), 1, 1), Err(FaultKind::NullReference));
+    }
+}
