@@ -30,9 +30,11 @@ impl Function<'_> {
             return None;
         }
         let [first, last] = [&it.first, &it.last].map(|it| it.as_const().and_then(Value::as_integer));
-        let turns = ((last? - first?).checked_div(step)? + 1).max(0);
-        let is_empty = if step > 0 { first? > last? } else { first? < last? };
-        let turns = if is_empty { 0 } else { turns };
+        let turns = (last? - first?).checked_div(step)? + 1;
+        // One turn or none is hardly meant, and as a range it says less than the comparison does.
+        if turns < 2 || (last? < first?) != (step < 0) {
+            return None;
+        }
         let end = self.repr(it.counter.ty).integer(first? + turns * step)?;
         Some(Counted { turns, end })
     }
