@@ -13,6 +13,8 @@ pub enum Task {
     Apply(Op, Repr),
     /// The back ends may turn a negated comparison around.
     NotApply(Op, Repr),
+    /// By a constant, which a back end may know more of than of a variable.
+    Shift(Op, Repr, i64),
     Convert(Conversion, Repr, Repr),
 }
 
@@ -27,6 +29,11 @@ impl Task {
                     tasks.push(Self::NotApply(*op, repr));
                 }
             }
+        }
+        for repr in Repr::ALL.into_iter().filter(|it| it.is_unsigned()) {
+            let bits = i64::from(repr.size()) * 8;
+            let counts = [-1, 0, 1, bits / 2, bits - 1, bits, bits + 1];
+            tasks.extend([Op::Shl, Op::Shr].iter().flat_map(|op| counts.map(|count| Self::Shift(*op, repr, count))));
         }
         for from in Repr::ALL {
             tasks.extend(
@@ -50,6 +57,7 @@ impl Task {
             Self::Apply(op, repr) | Self::NotApply(op, repr) => {
                 op.operands().iter().map(|it| it.unwrap_or(repr)).collect()
             }
+            Self::Shift(_, repr, _) => vec![repr],
             Self::Convert(_, from, _) => vec![from],
         }
     }
@@ -59,6 +67,7 @@ impl Task {
         match self {
             Self::Apply(op, repr) => op.result().unwrap_or(repr),
             Self::NotApply(..) => Repr::Bool,
+            Self::Shift(_, repr, _) => repr,
             Self::Convert(_, _, to) => to,
         }
     }
@@ -67,6 +76,8 @@ impl Task {
         match self {
             Self::Apply(op, repr) => format!("{op:?}_{repr:?}"),
             Self::NotApply(op, repr) => format!("Not{op:?}_{repr:?}"),
+            Self::Shift(op, repr, count) if count < 0 => format!("{op:?}_{repr:?}_back_{}", -count),
+            Self::Shift(op, repr, count) => format!("{op:?}_{repr:?}_by_{count}"),
             Self::Convert(how, from, to) => format!("{how:?}_{from:?}_{to:?}"),
         }
     }
@@ -78,10 +89,14 @@ impl Task {
             Place::root(Root::Instance, Type::Struct(state))
                 .field(FieldId::next(at), Type::Elementary(Elementary::number(repr)))
         };
-        let loads = operands.iter().enumerate().map(|(at, repr)| Expr::load(place(at, *repr), AT)).collect();
+        let mut loads: Vec<_> =
+            operands.iter().enumerate().map(|(at, repr)| Expr::load(place(at, *repr), AT)).collect();
+        if let Self::Shift(_, _, count) = self {
+            loads.push(Expr::constant(Elementary::Lint, Value::I64(count), AT));
+        }
         let ty = Type::Elementary(Elementary::number(self.result()));
         let value = match self {
-            Self::Apply(op, _) => Expr::apply(op, ty, loads, AT),
+            Self::Apply(op, _) | Self::Shift(op, ..) => Expr::apply(op, ty, loads, AT),
             Self::NotApply(op, _) => Expr::apply(Op::Not, ty, vec![Expr::apply(op, ty, loads, AT)], AT),
             Self::Convert(how, ..) => {
                 Expr::convert(how, ty, loads.into_iter().next().expect("a conversion has an operand"), AT)

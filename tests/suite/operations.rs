@@ -56,6 +56,7 @@ fn expected(task: Task, operands: &[Value]) -> Result<Value, Fault> {
             let inner = apply(op, repr, operands).unwrap().map_err(at)?;
             apply(Op::Not, Repr::Bool, &[inner]).unwrap().map_err(at)
         }
+        Task::Shift(op, repr, count) => apply(op, repr, &[operands[0], Value::I64(count)]).unwrap().map_err(at),
         Task::Convert(Conversion::Truncate, _, to) => Ok(ops::trunc_value(operands[0], to)),
         Task::Convert(Conversion::Bits, _, to) => Ok(ops::same_bits(operands[0], to)),
         Task::Convert(Conversion::Value | Conversion::Same, _, to) => Ok(ops::convert_value(operands[0], to)),

@@ -84,18 +84,19 @@ pub fn effects(program: &Program, rules: &Rules) -> Vec<Effects> {
     known
 }
 
-/// Whether a statement that calls no routine may fault. Around it are these loops with private counters; of each local it is
+/// Whether a statement may fault, where it is known what the routines do that it calls. Around it are these loops with private counters; of each local it is
 /// known whether its values are checked.
 pub fn statement_faults<'a>(
     program: &'a Program,
     rules: &'a Rules,
+    known: &'a [Effects],
     routine: &'a Routine,
     (around, checked): (Vec<&'a For>, Vec<bool>),
     statement: &'a Statement,
 ) -> bool {
     let effects = Effects { borrowed: vec![false; routine.locals.len()], checked, ..Effects::default() };
     let reached = BTreeSet::new();
-    let mut finder = Finder { program, rules, known: &[], reached: &reached, routine, loops: around, effects };
+    let mut finder = Finder { program, rules, known, reached: &reached, routine, loops: around, effects };
     finder.statement(statement);
     finder.effects.faults
 }

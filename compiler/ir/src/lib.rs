@@ -37,6 +37,7 @@ mod print;
 pub mod verify;
 
 pub mod alias;
+pub mod byte_copy;
 pub mod effects;
 pub mod faults;
 pub mod interpret;

@@ -7,8 +7,8 @@
 //!                                        state.i := i; state.sum := sum
 //! ```
 //!
-//! It applies to a loop that calls no routine, takes no address and does not return: nobody sees the state before the loop
-//! has ended. Where the loop can fault, the values are stored after a fault as well
+//! It applies to a loop that does not return: nobody sees the state before the loop has ended. A routine that it calls sees
+//! no variable that is taken ([`unseen`]). Where the loop can fault, the values are stored after a fault as well
 //! ([`Finally`](StatementKind::Finally)), so that the state is what it was when the loop faulted. A variable is taken if all
 //! that the loop touches is either this variable or, whatever indices and references are, another one.
 //!
@@ -17,22 +17,26 @@
 //! often: a local counter is private to its loop.
 
 mod local;
+mod pointed;
 mod read_once;
 mod set_first;
+mod unseen;
 
 use crate::alias::{Alias, Frame, alias};
-use crate::effects::{Rules, statement_faults};
+use crate::effects::{Effects, Rules, effects, statement_faults};
 use crate::faults::code_faults;
 use crate::loops::{checked_locals, privatise};
 use crate::visit::{self, Access, Rewrite};
 use crate::{
-    Block, Const, Expr, ExprKind, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement,
-    StatementKind, Type, Value,
+    Block, Const, Expr, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type,
+    Value,
 };
 use local::{MOST_LOCALS, name};
+use pointed::directly;
 use read_once::read_once;
 use set_first::is_set_first;
 use staunch_runtime::Repr;
+use unseen::Others;
 
 /// A loop that touches more places than this stays: each is compared with each.
 const MOST_PLACES: usize = 128;
@@ -48,24 +52,28 @@ pub struct Gain<'a> {
     /// Whether a WHILE or REPEAT is taken that can fault and stores no element of an array, nor behind a reference: where the
     /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
+    /// Whether variables are taken that hold references. A back end that calls the runtime in a loop has a register less.
+    pub of_references: bool,
 }
 
 impl Gain<'_> {
     /// Of all that can be.
-    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false };
+    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false, of_references: true };
 }
 
 /// The program with such loops.
 #[must_use]
 pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
     let mut program = program.clone();
+    let known = effects(&program, &RULES);
     for at in 0..program.routines.len() {
         let checked = checked_locals(&program.routines[at]);
         let mut body = std::mem::take(&mut program.routines[at].body);
         let mut routine = program.routines[at].clone();
         let declared = routine.locals.len();
-        let around = Vec::new();
-        Promoter { program: &program, gain, routine: &mut routine, declared, checked, around }.block(&mut body);
+        directly(&program, &mut routine, &mut body, declared);
+        let (known, around) = (&known, Vec::new());
+        Promoter { program: &program, gain, known, routine: &mut routine, declared, checked, around }.block(&mut body);
         read_once(&program, &mut routine, &mut body, declared);
         program.routines[at] = Routine { body, ..routine };
     }
@@ -77,6 +85,8 @@ const RULES: Rules = Rules { operation_faults: code_faults, drops_checks: true, 
 struct Promoter<'p> {
     program: &'p Program,
     gain: Gain<'p>,
+    /// What each routine does.
+    known: &'p [Effects],
     /// Without its body.
     routine: &'p mut Routine,
     /// How many locals it had.
@@ -156,12 +166,11 @@ impl Promoter<'_> {
         true
     }
 
-    /// Whether nothing but its own statements runs in a loop, and it is left at its end alone.
+    /// Whether nothing but its own statements and routines runs in a loop, and it is left at its end alone.
     fn is_closed(&self, statement: &Statement) -> bool {
         let mut closed = true;
         visit::statements(std::slice::from_ref(statement), &mut |it| {
             closed = closed && is_plain(&it.kind) && (self.gain.suits)(it);
-            visit::all_exprs(it, &mut |it| closed &= !matches!(it.kind, ExprKind::AddressOf(_)));
         });
         closed
     }
@@ -171,12 +180,13 @@ impl Promoter<'_> {
         let Some(Touched(touched)) = Touched::by(statement) else { return Vec::new() };
         let takes_reads = self.gain.of_reads && stores_element(statement);
         let frame = Frame::of(self.program, self.routine);
+        let others = Others::of(&frame, self.known, statement);
         let is_taken = |(at, it): &(usize, &Touch)| {
             let is_useful = it.is_written || takes_reads && !self.is_counter_around(&it.place);
             let can_be = is_useful && !it.is_borrowed && self.is_scalar_variable(&it.place);
             let is_apart =
                 |(other, of): (usize, &Touch)| other == *at || alias(&frame, &of.place, &it.place) == Alias::No;
-            can_be && touched.iter().enumerate().all(is_apart)
+            can_be && others.do_not_see(&it.place) && touched.iter().enumerate().all(is_apart)
         };
         let taken: Vec<&Touch> = touched.iter().enumerate().filter(is_taken).map(|(_, it)| it).collect();
         let mut candidates = Vec::new();
@@ -200,7 +210,12 @@ impl Promoter<'_> {
             Root::Local(_) => false,
         };
         let is_named = place.projections.iter().all(|it| matches!(it, Projection::Field(_)));
-        is_stored && is_named && matches!(place.ty, Type::Elementary(_) | Type::Enum(_))
+        let is_scalar = match place.ty {
+            Type::Elementary(_) | Type::Enum(_) => true,
+            Type::Reference(_) => self.gain.of_references,
+            Type::Subrange(..) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
+        };
+        is_stored && is_named && is_scalar
     }
 
     /// A local for a variable. Where a routine has many, they are those of loops before.
@@ -221,7 +236,14 @@ impl Promoter<'_> {
     fn faults(&self, statement: &Statement) -> bool {
         let mut checked = self.checked.clone();
         checked.resize(self.routine.locals.len(), false);
-        statement_faults(self.program, &RULES, self.routine, (self.around.iter().collect(), checked), statement)
+        statement_faults(
+            self.program,
+            &RULES,
+            self.known,
+            self.routine,
+            (self.around.iter().collect(), checked),
+            statement,
+        )
     }
 }
 
@@ -267,7 +289,7 @@ fn stores_element(statement: &Statement) -> bool {
     found
 }
 
-/// Whether a statement runs nothing that is elsewhere, and leaves no more than a loop.
+/// Whether it is known what a statement runs, and it leaves no more than a loop.
 fn is_plain(kind: &StatementKind) -> bool {
     match kind {
         StatementKind::Assign { .. }
@@ -278,11 +300,11 @@ fn is_plain(kind: &StatementKind) -> bool {
         | StatementKind::Turn
         | StatementKind::Exit
         | StatementKind::Continue
+        | StatementKind::Call { .. }
         | StatementKind::CallBlock { .. } => true,
         StatementKind::Try { .. }
         | StatementKind::Finally { .. }
         | StatementKind::Return
-        | StatementKind::Call { .. }
         | StatementKind::External(_)
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Fault(_) => false,
@@ -313,6 +335,15 @@ impl Rewrite for Renamer<'_> {
     fn place(&mut self, place: &mut Place) {
         if let Some(it) = self.candidates.iter().find(|it| it.place.is_same_variable(place)) {
             *place = Place::local(it.local, place.ty);
+        }
+        // What is behind a reference.
+        let way = place.projections.iter().position(|it| matches!(it, Projection::Deref { .. }));
+        let holder = way.map(|at| (at, place.before(at, place.ty)));
+        if let Some((at, holder)) = holder
+            && let Some(it) = self.candidates.iter().find(|it| it.place.is_same_variable(&holder))
+        {
+            place.root = Root::Local(it.local);
+            place.projections.drain(..at);
         }
     }
 }

@@ -37,7 +37,7 @@ pub(crate) struct Way {
 
 impl Function<'_, '_> {
     /// The words of the program's table, and the state.
-    fn world(&mut self) -> [(AbiParam, clif::Value); 2] {
+    pub(crate) fn world(&mut self) -> [(AbiParam, clif::Value); 2] {
         let words = self.module.reference_table();
         let words = self.data_pointer(words);
         let state = self.start.globals.expect("a function that follows references gets the globals");
@@ -109,7 +109,7 @@ impl Function<'_, '_> {
     }
 
     /// Calls what may fault, and goes on where it does not.
-    fn checked(&mut self, symbol: &str, arguments: &[(AbiParam, clif::Value)], at: Location) {
+    pub(crate) fn checked(&mut self, symbol: &str, arguments: &[(AbiParam, clif::Value)], at: Location) {
         let kind = self.call_runtime(symbol, arguments, Some(AbiParam::new(types::I8).uext()));
         self.fault_of_kind(kind.expect("an access returns its fault"), at);
     }
@@ -385,7 +385,7 @@ impl Function<'_, '_> {
     }
 
     /// As `ops::advance` does it.
-    fn advanced(&mut self, reference: clif::Value, distance: clif::Value) -> clif::Value {
+    pub(crate) fn advanced(&mut self, reference: clif::Value, distance: clif::Value) -> clif::Value {
         let moved = self.ins().iadd(reference, distance);
         let low = self.ins().ireduce(types::I32, moved);
         let low = self.ins().uextend(types::I64, low);

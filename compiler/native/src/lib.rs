@@ -28,6 +28,7 @@ mod statement;
 mod turns;
 mod unrolled;
 
+mod byte_copy;
 mod call;
 mod case;
 mod expression;

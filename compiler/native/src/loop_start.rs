@@ -71,7 +71,7 @@ impl<'p> Function<'_, 'p> {
         free
     }
 
-    fn way_of(&mut self, known: &Known<'p>, is_tested: bool) -> Way {
+    pub(crate) fn way_of(&mut self, known: &Known<'p>, is_tested: bool) -> Way {
         match known {
             Known::Nothing => unreachable!("only loops whose turns are known take them by their way"),
             Known::While(it) => self.way_of_while(it, is_tested),

@@ -28,6 +28,9 @@ impl<'p> Function<'_, 'p> {
     }
 
     pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Flow {
+        if let Some(flow) = self.copied(it, at) {
+            return flow;
+        }
         let opens = self.open_turns(&[&it.body]);
         let running = self.start_for(it, at);
         if let Some(register) = running.register {
@@ -53,7 +56,7 @@ impl<'p> Function<'_, 'p> {
     }
 
     /// Gives the counter's variable what its register has.
-    fn set_late(&mut self, running: &Running<'p>) {
+    pub(crate) fn set_late(&mut self, running: &Running<'p>) {
         if let (Some(late), Some(register)) = (running.late, running.register) {
             let counter = self.builder.use_var(register);
             let counter = self.narrowed(running.repr, counter);
@@ -61,7 +64,7 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
+    pub(crate) fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
         let repr = self.module.program.repr(it.counter.ty).expect("verified IR: an integer counter");
         self.assign(&it.counter, &it.first);
         let last = it.last.as_const().is_none().then(|| self.wide_scalar(repr, &it.last));

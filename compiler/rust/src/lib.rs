@@ -18,7 +18,9 @@ mod expected;
 mod loop_state;
 
 mod attempt;
+mod byte_copy;
 mod constant;
+mod counted;
 mod expression;
 mod external;
 mod firmware;

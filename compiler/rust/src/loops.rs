@@ -40,8 +40,17 @@ impl Function<'_> {
     }
 
     pub fn for_loop(&mut self, statement: &Statement, it: &For) -> TokenStream {
+        if let Some(copied) = self.copied(statement, it) {
+            return copied;
+        }
         let first = self.expr(&it.first).tokens;
         let first = self.assigned(statement, &it.counter, first);
+        if let Some(counted) = self.counted(it) {
+            let last = self.expr(&it.last).tokens;
+            let before = self.for_turns(it, &last, &TokenStream::new()).before;
+            let counted = self.counted_loop(it, &counted);
+            return quote!(#first #before #counted);
+        }
         let last = self.once("last", &it.last);
         let step = match &it.step {
             Step::Constant(_) => Once { value: TokenStream::new(), before: None },
@@ -179,7 +188,7 @@ impl Function<'_> {
     }
 
     /// `counter = number;`
-    fn given(&self, place: &Place, number: &TokenStream) -> TokenStream {
+    pub fn given(&self, place: &Place, number: &TokenStream) -> TokenStream {
         let value = match place.ty {
             Type::Enum(id) => {
                 let name = self.emitter.names.enumeration(id);

@@ -14,6 +14,7 @@ pub enum Level {
     Or,
     Xor,
     And,
+    Shift,
     Sum,
     Product,
     Unary,

@@ -11,7 +11,7 @@
 //!   a `u16` length, with the bytes right after it; a string result goes to a header and a
 //!   capacity after the operands, and is appended to what the string holds.
 //! - `staunch_text_append`, and `staunch_text_clear`, which ends writing a string anew.
-//! - `staunch_reference_{address, load, store, load_text, store_text, find}`: accesses through references. They
+//! - `staunch_reference_{address, load, store, copy, load_text, store_text, find}`: accesses through references. They
 //!   take the words of the table, and the state; those that may fault return 0 or the fault's code.
 //! - the symbols in `BLOCKS`: instructions of the standard blocks take the instance, the context
 //!   and the rung; prescans take the instance.

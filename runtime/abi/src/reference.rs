@@ -80,6 +80,26 @@ unsafe extern "C" fn staunch_reference_store(
     code(table.store_bytes(memory, reference, distance, View::from_code(view), value))
 }
 
+/// Copies `count` bytes through two references.
+///
+/// # Safety
+/// As [`table`] and [`memory`] say.
+#[unsafe(no_mangle)]
+unsafe extern "C" fn staunch_reference_copy(
+    words: *const u32,
+    state: *mut u8,
+    to: u64,
+    from: u64,
+    count: i64,
+    step: i64,
+) -> u8 {
+    // SAFETY: the caller's promise.
+    let table = unsafe { table(words) };
+    // SAFETY: the caller's promise.
+    let memory = unsafe { memory(&table, state) };
+    code(table.copy(memory, to, from, count, step))
+}
+
 macro_rules! texts {
     ($($unit:ident $load:ident $store:ident;)*) => { $(
         /// Reads a string to the one at `out`.
@@ -156,6 +176,7 @@ pub(crate) fn for_each_symbol(each: &mut dyn FnMut(&'static str, *const u8)) {
     each("staunch_reference_address", staunch_reference_address as *const u8);
     each("staunch_reference_load", staunch_reference_load as *const u8);
     each("staunch_reference_store", staunch_reference_store as *const u8);
+    each("staunch_reference_copy", staunch_reference_copy as *const u8);
     each("staunch_reference_load_text", staunch_reference_load_text as *const u8);
     each("staunch_reference_store_text", staunch_reference_store_text as *const u8);
     each("staunch_reference_load_wide_text", staunch_reference_load_wide_text as *const u8);

@@ -13,6 +13,7 @@
 //!
 //! An object in a pool has a mark, which says whether it is in use: what leads to one that was deleted is a fault.
 
+mod copy;
 mod found;
 mod memory;
 mod table;

@@ -260,9 +260,9 @@ impl Main {
         self.start(globals); // :18
         let shared: u16 = globals.w; // :22
         self.both.bytes[0] = ops::convert::<u16, u8>(shared);
-        self.both.bytes[1] = ops::convert::<u16, u8>(ops::shr(shared, 8));
+        self.both.bytes[1] = ops::convert::<u16, u8>(shared >> 8);
         self.flags.bits = (self.flags.bits & 0xFE)
-            | (u8::from(ops::convert::<u16, u8>(ops::shr(globals.w, 8)) > 3) & 1);
+            | (u8::from(ops::convert::<u16, u8>(globals.w >> 8) > 3) & 1);
         self.packed.bytes[0] = self.both.bytes[0]; // :24
         self.nothing.scan(cx)?; // :25
         self.edge.start = self.flags.bits & 1 != 0; // :26

@@ -32,7 +32,7 @@
 use core::cell::Cell;
 use staunch_runtime::{Context, Fault, OrFault};
 
-use staunch_runtime::{firmware, ops, reference};
+use staunch_runtime::{exception, firmware, ops, reference};
 
 /// The sources, as the `file` of a fault's location counts them.
 pub const FILES: &[&str] = &["looked_up.st"];
@@ -104,60 +104,66 @@ impl Main {
     /// One scan.
     #[rustfmt::skip]
     pub fn scan(&self, _cx: &Context, machine: &Machine) -> Result<(), Fault> {
-        self.i.set(0); // :8
-        while self.i.get() <= 7 {
-            let i = self.i.get();
-            self.p
-                .set(
-                    reference::to(
+        let mut i: i16 = self.i.get(); // :8
+        let mut p: u64 = self.p.get();
+        let mut sum: i32 = self.sum.get();
+        let ended = exception::attempt(|| {
+            i = 0;
+            while i <= 7 {
+                if ops::modulo(i32::from(i), 2).at(LOOKED_UP_ST, 9, 10)? == 0 {
+                    // :9
+                    p = reference::to(
                         1,
                         machine,
                         &self
                             .motors[ops::index(i64::from(i), 0, 7)
-                            .at(LOOKED_UP_ST, 9, 21)?],
-                    ),
-                );
-            let p: u64 = self.p.get(); // :10
-            machine.motor_at(p, 0).set(2, |it| &it.target, 100).at(LOOKED_UP_ST, 10, 5)?;
-            if machine
-                .motor_at(p, 0)
-                .get(0, |it| it.speed.get())
-                .at(LOOKED_UP_ST, 11, 8)?
-                < machine
-                    .motor_at(p, 0)
-                    .get(2, |it| it.target.get())
-                    .at(LOOKED_UP_ST, 11, 19)?
-            {
-                // :11
+                            .at(LOOKED_UP_ST, 9, 41)?],
+                    );
+                }
                 machine
                     .motor_at(p, 0)
-                    .set(
-                        0,
-                        |it| &it.speed,
-                        machine
-                            .motor_at(p, 0)
-                            .get(0, |it| it.speed.get())
-                            .at(LOOKED_UP_ST, 11, 46)?
-                            .wrapping_add(1),
-                    )
-                    .at(LOOKED_UP_ST, 11, 34)?;
-            }
-            self.sum
-                .set(
-                    self
-                        .sum
-                        .get()
-                        .wrapping_add(
-                            i32::from(
-                                machine
-                                    .motor_at(p, 0)
-                                    .get(0, |it| it.speed.get())
-                                    .at(LOOKED_UP_ST, 12, 18)?,
-                            ),
+                    .set(2, |it| &it.target, 100)
+                    .at(LOOKED_UP_ST, 10, 5)?;
+                if machine
+                    .motor_at(p, 0)
+                    .get(0, |it| it.speed.get())
+                    .at(LOOKED_UP_ST, 11, 8)?
+                    < machine
+                        .motor_at(p, 0)
+                        .get(2, |it| it.target.get())
+                        .at(LOOKED_UP_ST, 11, 19)?
+                {
+                    // :11
+                    machine
+                        .motor_at(p, 0)
+                        .set(
+                            0,
+                            |it| &it.speed,
+                            machine
+                                .motor_at(p, 0)
+                                .get(0, |it| it.speed.get())
+                                .at(LOOKED_UP_ST, 11, 46)?
+                                .wrapping_add(1),
+                        )
+                        .at(LOOKED_UP_ST, 11, 34)?;
+                }
+                sum = sum
+                    .wrapping_add(
+                        i32::from(
+                            machine
+                                .motor_at(p, 0)
+                                .get(0, |it| it.speed.get())
+                                .at(LOOKED_UP_ST, 12, 18)?,
                         ),
-                );
-            self.i.set(self.i.get().wrapping_add(1)); // :12
-        }
+                    );
+                i = i.wrapping_add(1); // :12
+            }
+            Ok(())
+        });
+        self.i.set(i); // :8
+        self.p.set(p);
+        self.sum.set(sum);
+        ended?;
         Ok(())
     }
 }

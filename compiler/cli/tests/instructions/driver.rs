@@ -86,7 +86,8 @@ int main(void) {{
     )
 }
 
-/// Rust around the program by hand, so that C can call it.
+/// Rust around the program by hand, so that C can call it. The program is a symbol that others may use: else the optimiser
+/// would leave out what no line of this crate reads, as pins of blocks, and take for constant what none writes.
 pub fn around_by_hand(subject: &Subject) -> String {
     let folder = perf().join("by_hand");
     let mut text = format!(
@@ -105,7 +106,8 @@ numbers!(i8 i16 i32 u8 u16 u32);
 macro_rules! reals {{ ($($t:ty)*) => {{ $(impl Number for $t {{
     fn set(&mut self, value: f64) {{ *self = value as $t; }} fn get(&self) -> f64 {{ *self as f64 }} }})* }} }}
 reals!(f32 f64);
-static mut PROGRAM: Program = Program::NEW;
+#[unsafe(no_mangle)]
+pub static mut PROGRAM: Program = Program::NEW;
 fn program() -> &'static mut Program {{ unsafe {{ &mut *&raw mut PROGRAM }} }}
 #[unsafe(no_mangle)]
 pub extern \"C\" fn by_hand_scan(now: i64) {{ program().scan(now); }}

@@ -73,7 +73,7 @@ pub fn to<P: ?Sized>(object: u32, whole: &impl Shared, part: &P) -> u64 {
 }
 
 /// What lies at a distance from where a reference points, with the variable that is there if it is one of those that are
-/// expected.
+/// expected. Where the table decides, it gets a copy of the table: this is in registers as long as nobody has its address.
 #[derive(Debug)]
 pub struct Found<'m, T, M> {
     variable: Option<&'m T>,
@@ -108,7 +108,10 @@ impl<'m, T, M: Shared> Found<'m, T, M> {
     pub fn get_as<V: Scalar>(self, view: View, further: u64, of: impl FnOnce(&'m T) -> V) -> Result<V, FaultKind> {
         match self.variable {
             Some(it) => Ok(of(it)),
-            None => self.table.load(self.machine, self.reference, self.distance + further, view),
+            None => {
+                let Self { table, .. } = self;
+                table.load(self.machine, self.reference, self.distance + further, view)
+            }
         }
     }
 
@@ -137,7 +140,10 @@ impl<'m, T, M: Shared> Found<'m, T, M> {
                 store(it, value);
                 Ok(())
             }
-            None => self.table.store(self.machine, self.reference, self.distance + further, view, value),
+            None => {
+                let Self { table, .. } = self;
+                table.store(self.machine, self.reference, self.distance + further, view, value)
+            }
         }
     }
 
@@ -151,7 +157,10 @@ impl<'m, T, M: Shared> Found<'m, T, M> {
     ) -> Result<&'m V, FaultKind> {
         match self.variable {
             Some(it) => Ok(of(it)),
-            None => self.table.variable(self.machine, self.reference, self.distance + further, wanted),
+            None => {
+                let Self { table, .. } = self;
+                table.variable(self.machine, self.reference, self.distance + further, wanted)
+            }
         }
     }
 }

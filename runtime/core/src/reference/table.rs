@@ -8,6 +8,7 @@
 
 use super::{Memory, ORIGIN, Reference};
 use crate::{FaultKind, Repr, StringType};
+use core::ops::Range;
 
 /// As what an access wants to see memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,6 +55,23 @@ pub enum Part {
     Spread { at: usize },
     /// The characters of the string at an offset of the state, from this byte of them on.
     Characters { text: usize, ty: StringType, index: usize },
+}
+
+/// A byte, and those around it that are seen as it is.
+#[derive(Clone, Debug)]
+pub(super) struct Run {
+    pub(super) at: usize,
+    /// With that one.
+    pub(super) bytes: Range<usize>,
+    /// They belong to no variable: they are 0, and take no write.
+    pub(super) is_gap: bool,
+}
+
+impl Run {
+    /// How many bytes there are from that one on, with it.
+    pub(super) fn left(&self, up: bool) -> usize {
+        if up { self.bytes.end - self.at } else { self.at - self.bytes.start + 1 }
+    }
 }
 
 /// The objects of a program, by its words.
@@ -219,6 +237,23 @@ impl<'t> Table<'t> {
             }
             _ => Err(FaultKind::ForbiddenView),
         }
+    }
+
+    /// Where the byte is that a reference leads to, if it is nothing but a byte, with those around it in the same variable of
+    /// the object; or if it belongs to no variable.
+    pub(super) fn run(&self, bits: u64) -> Option<Run> {
+        let (at, rest) = self.locate(bits, 0).ok()?;
+        let (start, _) = self.object(Reference::from_bits(bits).object)?;
+        let end = at + rest;
+        if self.is_plain(bits) {
+            return Some(Run { at, bytes: start..end, is_gap: false });
+        }
+        let Some(found) = self.leaf(self.around(bits)?, at) else {
+            return Some(Run { at, bytes: at..at + 1, is_gap: true });
+        };
+        let is_bytes = found.node.kind == encode::NUMBERS || found.node.kind == encode::EXACT && found.node.second == 1;
+        let bytes = start.max(found.start)..end.min(found.start + found.node.size);
+        is_bytes.then_some(Run { at, bytes, is_gap: false })
     }
 
     /// A number across several variables, which are all numbers, and the bytes between them.
