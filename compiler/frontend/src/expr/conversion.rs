@@ -275,6 +275,9 @@ impl<'s> Checker<'_, 's> {
         let at = value.at;
         if real {
             let value = self.convert(Conversion::Value, Type::LREAL, value);
+            if unit == 1 {
+                return Some(value);
+            }
             let factor = staunch_runtime::ops::convert::<i64, f64>(unit);
             let factor = Expr::constant(Elementary::Lreal, Value::F64(factor), at);
             return self.apply(op, Type::LREAL, vec![value, factor], Type::LREAL, span);

@@ -1,6 +1,6 @@
 //! Names that are not there, and what was probably meant.
 
-use super::checker::Checker;
+use super::checker::{Checker, Context};
 use crate::diagnostic::wording::{article, list};
 use crate::dialect::{Dialect, missing};
 use crate::names::functions;
@@ -223,6 +223,16 @@ impl<'s> Checker<'_, 's> {
             );
             return;
         }
+        if let Some(later) = self.declared_later(name) {
+            let message = format!("`{}` is declared after this", name.text);
+            self.report(
+                Diagnostic::new(Code::E0101, name.span, message)
+                    .label("variables start in the order of their declarations")
+                    .other(later, "declared here")
+                    .help("move that declaration before this one"),
+            );
+            return;
+        }
         if let Some(list) = self.decl.names.qualified_list_with(name.text) {
             let full = format!("{list}.{}", name.text);
             let help = format!("the list has the attribute 'qualified_only': write `{full}`");
@@ -263,6 +273,16 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("call the function: `{}(…)`", name.text));
         }
         self.report(error);
+    }
+
+    /// Where a variable of the POU has the name, behind the initial value that names it.
+    fn declared_later(&self, name: ast::Name<'s>) -> Option<Span> {
+        let is_before = |it: Span| it.file == name.span.file && it.start < name.span.start;
+        let around = self.decl.pous.iter().filter(|it| is_before(it.ast.name.span));
+        let pou = around.max_by_key(|it| it.ast.name.span.start).filter(|_| self.context != Context::Body)?;
+        let names = pou.ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+        let mut later = names.filter(|it| !is_before(it.span) && it.span.file == name.span.file);
+        later.find(|it| Key(it.text) == Key(name.text)).map(|it| it.span)
     }
 
     /// `GVL.x`, where lists of global variables have no names.
