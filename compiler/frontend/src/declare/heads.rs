@@ -242,7 +242,8 @@ impl<'s> Declarations<'s> {
                     | PouKind::Test => format!("`{title}`"),
                 };
                 Diagnostic::new(Code::E0403, name.span, format!("`{}` does not have {what}", name.text))
-                    .label("an INTERFACE is had as a whole")
+                    .label("a class has all METHODs and PROPERTYs of the INTERFACEs that it IMPLEMENTS")
+                    .help("declare it here, or make the class ABSTRACT")
             }
         };
         self.report(error.other(wanted.span, "declared here"));

@@ -232,10 +232,13 @@ impl<'s> Checker<'_, 's> {
         if kind == ast::PouKind::FunctionBlock {
             error = error.help(format!("declare one: {declared}"));
         } else if kind == ast::PouKind::Program && !self.decl.dialect(name.span).calls_programs() {
-            error = error.label("PROGRAMs are called in `codesys` alone").help(format!(
-                "write it as FUNCTION_BLOCK {} … END_FUNCTION_BLOCK, declare an instance of it: {declared}",
-                name.text
-            ));
+            error = error
+                .label("PROGRAMs are called in `codesys` alone")
+                .note("it is accepted with `--dialect codesys`")
+                .help(format!(
+                    "write it as FUNCTION_BLOCK {} … END_FUNCTION_BLOCK, declare an instance of it: {declared}",
+                    name.text
+                ));
         }
         self.report(error);
         None

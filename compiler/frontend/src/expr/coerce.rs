@@ -194,6 +194,10 @@ impl<'s> Checker<'_, 's> {
                         error.help(format!("write `{meant}`")).fix(span, meant)
                     }
                     (_, _, Some(members), _) => error.help(format!("name a member: {members}")),
+                    (Type::Elementary(it), Type::String(into), None, Some(text)) => {
+                        let meant = format!("{}_TO_{}({text})", it.name(), into.word());
+                        error.help(format!("write `{meant}`")).fix(span, meant)
+                    }
                     _ => error,
                 });
                 None

@@ -17,10 +17,8 @@ impl Checker<'_, '_> {
         let op = arithmetic_op(sides.op);
         let (op_span, span) = (sides.op_span, sides.span);
         let Meeting { ty, a, b, .. } = self.meet(sides, |ty, _| ty.is_duration(), "both sides need to be times")?;
-        if let (Some(Value::I64(a)), Some(Value::I64(b))) = (a.as_const(), b.as_const()) {
-            let sum = if op == Op::Add { a.checked_add(b) } else { a.checked_sub(b) };
-            self.refuse_time_overflow(sum.is_none(), span)?;
-        }
+        let compute = if op == Op::Add { i128::checked_add } else { i128::checked_sub };
+        self.refuse_overflow([&a, &b], compute, span)?;
         if self.decl.dialect(span).rules().time_is_seconds() {
             let op = if op == Op::Add { Op::TimePlus } else { Op::TimeMinus };
             let [a, b] = [a, b].map(|it| self.convert(Conversion::Same, Type::LINT, it));
@@ -29,6 +27,38 @@ impl Checker<'_, '_> {
         }
         let sum = self.apply(op, ty, vec![a, b], ty, op_span)?;
         self.kept_duration(sum, op_span)
+    }
+
+    /// Reports a constant that its type does not hold in the dialect.
+    fn refuse_overflow(
+        &mut self,
+        [duration, other]: [&Expr; 2],
+        compute: fn(i128, i128) -> Option<i128>,
+        span: Span,
+    ) -> Option<()> {
+        let number = |it: &Expr| it.as_const().and_then(Value::as_integer);
+        let (Some(ty), Some(a), Some(b)) = (duration.ty.elementary(), number(duration), number(other)) else {
+            return Some(());
+        };
+        let count = self.decl.dialect(span).rules().milliseconds().filter(|_| ty == Elementary::Time);
+        let (range, unit) = match count {
+            Some(count) => (count.repr().range()?, i128::from(MILLISECOND)),
+            None => (ty.repr().range()?, 1),
+        };
+        let made = compute(a, b);
+        if made.is_some_and(|it| (range.0 * unit..=range.1 * unit).contains(&it)) {
+            return Some(());
+        }
+        let message = format!("this constant {} overflows", ty.name());
+        self.report(Diagnostic::new(Code::E0209, span, message).label(match (count, ty) {
+            (Some(Elementary::Udint), _) => "a TIME is T#0ms to T#49d17h2m47s295ms in this dialect",
+            (Some(_), _) => "a TIME is T#-24d20h31m23s648ms to T#24d20h31m23s647ms in this dialect",
+            (None, Elementary::Ultime) => {
+                "an LTIME is LTIME#0ns to LTIME#213503d23h34m33s709ms551us615ns in this dialect"
+            }
+            (None, _) => "a TIME reaches about 292 years either way",
+        }));
+        None
     }
 
     pub(super) fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
@@ -78,15 +108,23 @@ impl Checker<'_, '_> {
     fn scale_by_integer(&mut self, sides: Sides) -> Option<Expr> {
         let Operand::Typed(time) = sides.a else { return None };
         let (ty, op, op_span) = (time.ty, arithmetic_op(sides.op), sides.op_span);
-        let count = self.side(sides.b, Elementary::Lint, sides.right)?;
+        let count = match (sides.b.ty(), op) {
+            // A quotient by more than a LINT holds is nothing.
+            (Some(Type::Elementary(Elementary::Ulint)), Op::Div) if ty != Type::Elementary(Elementary::Ultime) => {
+                let count = self.side(sides.b, Elementary::Ulint, sides.right)?;
+                let held = self.signed_duration(count, op_span)?;
+                self.convert(Conversion::Same, Type::LINT, held)
+            }
+            _ => self.side(sides.b, Elementary::Lint, sides.right)?,
+        };
+        if op == Op::Mul {
+            self.refuse_overflow([&time, &count], i128::checked_mul, sides.span)?;
+        }
         if ty == Type::TIME && self.decl.dialect(op_span).rules().milliseconds().is_some() {
             let nanoseconds = self.convert(Conversion::Same, Type::LINT, time);
             let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, op_span)?;
             let scaled = self.apply(op, Type::LINT, vec![milliseconds, count], Type::LINT, op_span)?;
             return self.time_of_milliseconds(scaled, op_span);
-        }
-        if let (Some(Value::I64(a)), Some(Value::I64(b)), Op::Mul) = (time.as_const(), count.as_const(), op) {
-            self.refuse_time_overflow(a.checked_mul(b).is_none(), sides.span)?;
         }
         let count = self.retyped(count, ty);
         self.apply(op, ty, vec![time, count], ty, op_span)
@@ -106,6 +144,9 @@ impl Checker<'_, '_> {
         let scaled = self.apply(op, computed, vec![time, factor], computed, op_span)?;
         let number = match cuts {
             true => self.apply(Op::TruncLint, computed, vec![scaled], Type::LINT, op_span)?,
+            false if ty == Type::Elementary(Elementary::Ultime) => {
+                self.number_as(scaled, Elementary::Ulint, op_span)?
+            }
             false => self.convert(Conversion::Value, counted, scaled),
         };
         let scaled = self.convert(Conversion::Same, ty, number);
@@ -225,7 +266,7 @@ impl Checker<'_, '_> {
         };
         let mut diagnostic = Diagnostic::new(Code::E0202, span, message).label(label);
         if nanoseconds >= 0 {
-            diagnostic = diagnostic.help(format!("an LTIME holds nanoseconds: `{long}`"));
+            diagnostic = diagnostic.help(format!("an LTIME holds it: declare one, and write `{long}`"));
         }
         self.report(diagnostic);
         None

@@ -109,7 +109,8 @@ impl<'s> Checker<'_, 's> {
     /// Trap 8: an unsigned value against zero, where the outcome is always the same.
     pub(crate) fn compared_with_zero(&mut self, op: Op, ty: Elementary, sides: [&Expr; 2], span: Span) {
         let zero = |it: &Expr| it.as_const().and_then(Value::as_integer) == Some(0);
-        let unsigned = ty.repr().is_integer() && !ty.repr().is_signed() && ty != Elementary::Bool;
+        let counts = ty.repr().is_integer() && ty != Elementary::Bool && !ty.is_duration();
+        let unsigned = counts && !ty.repr().is_signed();
         let outcome = match (op, zero(sides[0]), zero(sides[1])) {
             (Op::Lt, false, true) | (Op::Gt, true, false) => "FALSE",
             (Op::Ge, false, true) | (Op::Le, true, false) => "TRUE",

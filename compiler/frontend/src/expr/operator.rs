@@ -246,11 +246,12 @@ impl<'s> Checker<'_, 's> {
             }
             (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_duration() && y.is_duration() => {
                 let units = if x == Elementary::Time { "milliseconds" } else { "nanoseconds" };
-                let (a, b) = (format!("{}_TO_LINT({a})", x.name()), format!("{}_TO_LINT({b})", y.name()));
+                let number = Elementary::number(x.repr()).name();
+                let (a, b) = (format!("{}_TO_{number}({a})", x.name()), format!("{}_TO_{number}({b})", y.name()));
                 match sides.op {
                     _ if x != y => Some("make both of one type: `TIME_TO_LTIME(…)`".to_owned()),
                     BinaryOp::Div => Some(format!("divide their {units}: `{a} / {b}`")),
-                    BinaryOp::Mod => Some(format!("take their {units}: `LINT_TO_{}({a} MOD {b})`", x.name())),
+                    BinaryOp::Mod => Some(format!("take their {units}: `{number}_TO_{}({a} MOD {b})`", x.name())),
                     _ => None,
                 }
             }

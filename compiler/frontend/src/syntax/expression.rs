@@ -167,8 +167,17 @@ fn unary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
         Kind::Plus => signed(input, UnaryOp::Plus),
         Kind::Not if names_its_operand(input) => postfix(input),
         Kind::Not | Kind::Bang => signed(input, UnaryOp::Not),
+        Kind::Star | Kind::Ampersand if foreign_syntax::joins_name(input) => pointed(input),
         _ => postfix(input),
     }
+}
+
+/// `*p` and `&n` of C.
+pub fn pointed<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+    let sign = input.take();
+    let operand = postfix(input)?;
+    foreign_syntax::pointer_sign(input, sign, operand.span);
+    Ok(Expr { kind: ExprKind::Error(Vec::new()), span: sign.to(operand.span) })
 }
 
 /// `NOT(IN := x)`, the function.
@@ -225,7 +234,10 @@ fn suffixes<'s>(input: &mut In<'_, '_, 's>, mut expr: Expr<'s>) -> Parsed<Expr<'
             }
             Kind::OpenBracket => ExprKind::Index(Box::new(expr), indices(input)?),
             Kind::OpenParen => ExprKind::Call(Box::new(expr), arguments(input)?),
-            Kind::Minus if foreign_syntax::arrow(input) => named_member(input, expr)?,
+            Kind::Minus if foreign_syntax::arrow(input) => {
+                let followed = Expr { span: expr.span, kind: ExprKind::Deref(Box::new(expr)) };
+                named_member(input, followed)?
+            }
             // Nothing is dereferenced before an operand.
             Kind::Caret if before_operand(input) => break,
             Kind::Caret => {

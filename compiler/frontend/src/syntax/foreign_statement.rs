@@ -8,11 +8,12 @@ use crate::{
 };
 
 use super::{
-    expression::is_latch,
+    expression::{is_latch, pointed},
     foreign_reader::{
         behind_parentheses, has_braces, is_word, refuse, skip_further_in, skip_line, skip_rest, skip_tokens,
         starts_line,
     },
+    foreign_syntax::joins_name,
     parser::{In, TokenReader},
 };
 
@@ -26,6 +27,7 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         (Kind::Var, Kind::Name) => input.kind_ahead(2) == Kind::Equal && declared(input),
         (Kind::Function, Kind::Name) => input.kind_ahead(2) == Kind::OpenParen && function(input),
         (Kind::Plus, Kind::Plus) | (Kind::Minus, Kind::Minus) => doubled(input),
+        (Kind::Star, Kind::Name) => joins_name(input) && followed(input),
         (Kind::Exit, Kind::For | Kind::While | Kind::Repeat | Kind::Do) => exit_by_name(input),
         _ => false,
     }
@@ -144,6 +146,15 @@ fn function(input: &mut In<'_, '_, '_>) -> bool {
     }
     skip_tokens(input, after);
     input.eat(Kind::Colon);
+    true
+}
+
+/// `*p := 5;`
+fn followed(input: &mut In<'_, '_, '_>) -> bool {
+    if pointed(input).is_err() {
+        return false;
+    }
+    skip_rest(input);
     true
 }
 

@@ -189,12 +189,34 @@ pub fn arrow(input: &mut In<'_, '_, '_>) -> bool {
     let sign = input.take();
     let sign = sign.to(input.take());
     input.report(
-        Diagnostic::new(Code::E0010, sign, "Structured Text writes `.` for `->`")
-            .label("expected `.`")
-            .help("write `.`")
-            .fix(sign, "."),
+        Diagnostic::new(Code::E0010, sign, "Structured Text writes `^.` for `->`")
+            .label("expected `^.`")
+            .help("write `^.`")
+            .fix(sign, "^."),
     );
     true
+}
+
+/// Whether a name is directly after the sign that is next: `*p`, `&n`.
+pub fn joins_name(input: &mut In<'_, '_, '_>) -> bool {
+    let at = input.number() + 1;
+    let (sign, name) = (input.here(), input.state().place(at));
+    input.kind_ahead(1) == Kind::Name && sign.end == name.start
+}
+
+/// `*p` and `&n` of C, after the sign: the operand is what follows.
+pub fn pointer_sign(input: &mut In<'_, '_, '_>, sign: Span, operand: Span) {
+    let (whole, text) = (sign.to(operand), input.text(operand));
+    let (meant, what) = match input.text(sign) {
+        "*" => (format!("{text}^"), "follows a pointer with `^` after it"),
+        _ => (format!("ADR({text})"), "takes an address with `ADR`"),
+    };
+    input.report(
+        Diagnostic::new(Code::E0010, whole, format!("Structured Text {what}"))
+            .label(format!("expected `{meant}`"))
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
 }
 
 /// A number with letters directly after it, such as `0xFF` or `5s`, and what is meant.
@@ -234,8 +256,18 @@ pub fn point_first(input: &mut In<'_, '_, '_>) -> bool {
     if input.kind() != Kind::Dot || input.kind_ahead(1) != Kind::Integer {
         return false;
     }
-    let span = input.take();
-    let span = span.to(input.take());
+    let is_third = kind_before(input) == Some(Kind::DotDot) && input.last().end == input.here().start;
+    let point = input.take();
+    let span = point.to(input.take());
+    if is_third {
+        input.report(
+            Diagnostic::new(Code::E0001, point, "a range is written with two points")
+                .label("this is the third one")
+                .help("write `first..last`")
+                .fix(point, ""),
+        );
+        return true;
+    }
     let text = input.text(span);
     input.report(
         Diagnostic::new(Code::E0005, span, "a number has a digit before its point")

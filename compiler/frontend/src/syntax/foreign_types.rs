@@ -65,10 +65,26 @@ pub fn other_bound<'t, 's: 't>() -> impl Rule<'t, 's, Option<(Span, Expr<'s>)>> 
     colon.or(nothing)
 }
 
-/// `10`, `1:10` and `1-10` as the bounds of an array.
+/// What `1,5` is between the brackets of an array: where its comma is, if `low` is the first of the two.
+fn pair(state: &State<'_, '_>, low: Span) -> Option<(bool, Span)> {
+    let at = state.tokens.places.partition_point(|it| it.0 < low.start);
+    let first = if state.tokens.kinds.get(at + 1) == Some(&Kind::Comma) { at } else { at.checked_sub(2)? };
+    let shape = [Kind::OpenBracket, Kind::Integer, Kind::Comma, Kind::Integer, Kind::CloseBracket];
+    let around = state.tokens.kinds.get(first.checked_sub(1)?..first + 4)?;
+    let counts_from = state.slice(state.place(first));
+    (around == shape && matches!(counts_from, "0" | "1")).then(|| (first == at, state.place(first + 1)))
+}
+
+/// `10`, `1:10`, `1-10` and `1,10` as the bounds of an array.
 pub fn report_bound<'s>(state: &mut State<'_, 's>, low: &Expr<'s>, high: Option<(Span, Expr<'s>)>) {
     let text = state.slice(low.span);
+    let pair = pair(state, low.span).filter(|_| high.is_none());
     let it = match (high, &low.kind) {
+        // It was reported at the first.
+        _ if pair.is_some_and(|it| !it.0) => return,
+        _ if let Some((_, comma)) = pair => {
+            diagnostics::array_bounds(comma, "`,`", &format!("{text}..last")).fix(comma, "..")
+        }
         (Some((colon, high)), _) => {
             let meant = format!("{text}..{}", state.slice(high.span));
             diagnostics::array_bounds(colon, "`:`", &meant).fix(colon, "..")

@@ -35,8 +35,8 @@ pub fn literal<'t, 's: 't>(prefix: Option<Name<'s>>) -> impl Rule<'t, 's, Litera
         let is_wide = is_wide && state.tokens.kinds.get(token.start) == Some(&Kind::Text);
         if is_wide { text(state, token.start, true) } else { read(state, token.start) }
     });
-    value.then(rule(|input| Ok(has_letters(input)))).map(move |(value, letters)| {
-        let value = if letters { LiteralValue::Error } else { value };
+    value.then(rule(|input| Ok(has_more(input)))).map(move |(value, more)| {
+        let value = if more { LiteralValue::Error } else { value };
         Literal { prefix: prefix.map(Box::new), value }
     })
 }
@@ -50,15 +50,20 @@ pub fn typed<'t, 's: 't>(prefix: Name<'s>) -> impl Rule<'t, 's, Literal<'s>> {
     enumerator.or(literal(Some(prefix)))
 }
 
-/// Letters after a number or a duration that make another literal of it, taken and reported.
-fn has_letters(input: &mut In<'_, '_, '_>) -> bool {
-    if input.kind() != Kind::Name {
-        return false;
-    }
+/// What follows a literal and belongs to it, taken: letters after a number or a duration, the time of day after a date.
+fn has_more(input: &mut In<'_, '_, '_>) -> bool {
     let (literal, at) = (input.last(), input.number().saturating_sub(1));
+    let is_name = input.kind() == Kind::Name;
     match input.state().tokens.kinds.get(at) {
-        Some(Kind::Integer | Kind::Real) => foreign_syntax::glued(input, literal),
-        Some(Kind::Time) if lacks_unit(input.state(), at) => {
+        Some(Kind::Date) => {
+            let count = clock_apart(input.state(), at);
+            for _ in 0..count {
+                input.take();
+            }
+            count > 0
+        }
+        Some(Kind::Integer | Kind::Real) if is_name => foreign_syntax::glued(input, literal),
+        Some(Kind::Time) if is_name && lacks_unit(input.state(), at) => {
             input.take();
             true
         }
@@ -73,6 +78,24 @@ fn lacks_unit(state: &State<'_, '_>, at: usize) -> bool {
         && foreign_syntax::is_unit(state.slice(unit))
         && !state.breaks(duration.end, unit.start)
         && lex::duration(state.slice(duration)).is_err()
+}
+
+/// `DT#2024-02-29 12:30:00`: how many tokens its time of day has that a space parts from it.
+fn clock_apart(state: &State<'_, '_>, at: usize) -> usize {
+    let is_part = |it: &usize| matches!(state.tokens.kinds.get(*it), Some(Kind::Integer | Kind::Real | Kind::Colon));
+    let count = (at + 1..).take_while(is_part).count();
+    let (date, first) = (state.place(at), state.place(at + 1));
+    let is_meant = count >= 3
+        && !state.breaks(date.end, first.start)
+        && lex::date(state.slice(date)).is_err()
+        && lex::date(&in_one_piece(state, at, count).1).is_ok();
+    if is_meant { count } else { 0 }
+}
+
+/// Such a literal, and as it is meant.
+fn in_one_piece(state: &State<'_, '_>, at: usize, count: usize) -> (Span, String) {
+    let (date, clock) = (state.place(at), state.place(at + 1).to(state.place(at + count)));
+    (date.to(clock), format!("{}-{}", state.slice(date), state.slice(clock)))
 }
 
 fn report(state: &mut State<'_, '_>, code: Code, whole: Span, fault: Fault) {
@@ -151,6 +174,16 @@ fn text<'s>(state: &mut State<'_, 's>, at: usize, is_wide: bool) -> LiteralValue
 
 fn date<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
     let span = state.place(at);
+    let count = clock_apart(state, at);
+    if count > 0 {
+        let (whole, meant) = in_one_piece(state, at, count);
+        state.report(
+            Diagnostic::new(Code::E0006, whole, "a date and a time of day are written in one piece")
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        return LiteralValue::Error;
+    }
     match lex::date(state.slice(span)) {
         Ok((ty, nanoseconds)) => LiteralValue::Time { ty, nanoseconds },
         Err(fault) => {

@@ -15,7 +15,7 @@ use super::tests::Tests;
 use crate::dialect::{self, Dialect, missing};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
-use crate::spelling::Key;
+use crate::spelling::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
@@ -633,10 +633,23 @@ impl<'s> Declarations<'s> {
                 .help(format!("call it: `{}(…)`", name.text)),
             );
         }
+        let after = Span { start: name.span.end, end: name.span.end + 1, ..name.span };
+        let is_called = self.log.sources.text(after) == "(";
+        let routines = class.filter(|_| is_called).map_or(&[][..], |it| &self.pous[it].ast.routines);
+        let near = nearest(name.text, near.into_iter().chain(routines.iter().map(|it| it.name.text)));
+        let internal = class.filter(|_| !is_called && name.text.len() > 2).and_then(|it| {
+            let own = self.pous[it].ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+            nearest(name.text, own.map(|it| it.text))
+        });
         let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
             .label("unknown member");
         if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+            if let Some(internal) = internal.filter(|it| Key(it) != Key(near)) {
+                error = error.note(format!("`{internal}` is internal to `{owner}`"));
+            }
+        } else if let Some(internal) = internal {
+            error = error.help(format!("did you mean `{internal}`? It is internal to `{owner}`"));
         } else if let Some(members) = self.member_names(ty) {
             error = error.help(format!("it has {members}"));
         }
