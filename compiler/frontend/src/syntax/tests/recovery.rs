@@ -355,7 +355,7 @@ fn fixes_make_the_text_right() {
         ("x := T#5 s;", "x := T#5s;"),
         ("x := 1,5;", "x := 1.5;"),
         ("x := .5;", "x := 0.5;"),
-        ("x := a->b;", "x := a.b;"),
+        ("x := a->b;", "x := a^.b;"),
         ("t(IN: x);", "t(IN := x);"),
         ("t(IN x);", "t(IN := x);"),
         ("x := a ADN b;", "x := a AND b;"),
