@@ -290,9 +290,8 @@ impl<'s> Declarations<'s> {
     }
 
     fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
-        if let Some(elementary) = Elementary::named(name.text) {
-            let rules = self.dialect(name.span).rules();
-            let elementary = rules.own(elementary);
+        let rules = self.dialect(name.span).rules();
+        if let Some(elementary) = rules.named(name.text) {
             let initial = scalar_initial(rules.first_value(elementary));
             return Some(Resolved { ty: Type::Elementary(elementary), initial });
         }

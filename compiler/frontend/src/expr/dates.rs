@@ -38,7 +38,7 @@ impl<'s> Checker<'_, 's> {
             self.report(Diagnostic::new(Code::E0209, span, message).label("dates reach from 1677-09-22 to 2262-04-11"));
             return None;
         }
-        self.refuse_time_overflow(overflows, span)
+        self.refuse_time_overflow(overflows, result, span)
     }
 
     /// Nanoseconds as a value of this type: a day is its midnight, a time of day less than a day.

@@ -40,36 +40,28 @@ impl Checker<'_, '_> {
         let (Some(ty), Some(a), Some(b)) = (duration.ty.elementary(), number(duration), number(other)) else {
             return Some(());
         };
-        let count = self.decl.dialect(span).rules().milliseconds().filter(|_| ty == Elementary::Time);
-        let (range, unit) = match count {
-            Some(count) => (count.repr().range()?, i128::from(MILLISECOND)),
-            None => (ty.repr().range()?, 1),
-        };
-        let made = compute(a, b);
-        if made.is_some_and(|it| (range.0 * unit..=range.1 * unit).contains(&it)) {
-            return Some(());
-        }
-        let message = format!("this constant {} overflows", ty.name());
-        self.report(Diagnostic::new(Code::E0209, span, message).label(match (count, ty) {
-            (Some(Elementary::Udint), _) => "a TIME is T#0ms to T#49d17h2m47s295ms in this dialect",
-            (Some(_), _) => "a TIME is T#-24d20h31m23s648ms to T#24d20h31m23s647ms in this dialect",
-            (None, Elementary::Ultime) => {
-                "an LTIME is LTIME#0ns to LTIME#213503d23h34m33s709ms551us615ns in this dialect"
-            }
-            (None, _) => "a TIME reaches about 292 years either way",
-        }));
-        None
+        let limits = self.decl.dialect(span).rules().limits(ty)?;
+        let is_held = compute(a, b).is_some_and(|it| (limits.0..=limits.1).contains(&it));
+        self.refuse_time_overflow(!is_held, ty, span)
     }
 
-    pub(super) fn refuse_time_overflow(&mut self, overflows: bool, span: Span) -> Option<()> {
+    pub(super) fn refuse_time_overflow(&mut self, overflows: bool, ty: Elementary, span: Span) -> Option<()> {
         if overflows {
-            self.report(
-                Diagnostic::new(Code::E0209, span, "this constant TIME overflows")
-                    .label("a TIME reaches about 292 years either way"),
-            );
+            let message = format!("this constant {} overflows", ty.name());
+            let label = self.limits_in_words(ty, span)?;
+            self.report(Diagnostic::new(Code::E0209, span, message).label(label));
             return None;
         }
         Some(())
+    }
+
+    /// Which durations a type has.
+    fn limits_in_words(&self, ty: Elementary, span: Span) -> Option<String> {
+        let rules = self.decl.dialect(span).rules();
+        let (least, greatest) = rules.limits(ty)?;
+        let is_whole = ty == Elementary::Time && rules.milliseconds().is_some();
+        let unit = if is_whole { "whole milliseconds, " } else { "" };
+        Some(format!("{} holds {unit}{} to {} in this dialect", ty.name(), spelled(ty, least), spelled(ty, greatest)))
     }
 
     /// TIME `*` or `/` a number. An integer counts exactly, a real through LREAL; in OpenPLC from v4.1 on at its own type, and
@@ -218,8 +210,8 @@ impl Checker<'_, '_> {
             (Elementary::Time, _) => self.refuse_unkept(nanoseconds, span)?,
             (Elementary::Ltime, Elementary::Ultime) if nanoseconds < 0 => {
                 let message = format!("`{}` does not fit LTIME", self.decl.log.sources.text(span));
-                let range = "LTIME holds LTIME#0ns to LTIME#213503d23h34m33s709ms551us615ns in this dialect";
-                self.report(Diagnostic::new(Code::E0202, span, message).label(range));
+                let label = self.limits_in_words(Elementary::Ultime, span)?;
+                self.report(Diagnostic::new(Code::E0202, span, message).label(label));
                 return None;
             }
             (Elementary::Ultime, _) if self.decl.dialect(span).rules().own(Elementary::Ltime) != kept => {
@@ -248,22 +240,16 @@ impl Checker<'_, '_> {
 
     /// Reports a literal of a TIME that the dialect does not keep as it is.
     pub(super) fn refuse_unkept(&mut self, nanoseconds: Time, span: Span) -> Option<()> {
-        let Some(count) = self.decl.dialect(span).rules().milliseconds() else { return Some(()) };
-        let milliseconds = nanoseconds / MILLISECOND;
-        let long = self.decl.log.sources.text(span).split_once('#').map(|it| format!("LTIME#{}", it.1))?;
-        let is_whole = milliseconds * MILLISECOND == nanoseconds;
-        if is_whole && count.repr().integer(i128::from(milliseconds)).is_some() {
+        let rules = self.decl.dialect(span).rules();
+        let (least, greatest) = rules.limits(Elementary::Time)?;
+        let is_whole = rules.milliseconds().is_none() || nanoseconds % MILLISECOND == 0;
+        if is_whole && (least..=greatest).contains(&i128::from(nanoseconds)) {
             return Some(());
         }
         let literal = self.decl.log.sources.text(span);
-        let (message, label) = if !is_whole {
-            (format!("`{literal}` has a part of a millisecond"), "TIME holds whole milliseconds in this dialect")
-        } else if count.repr().is_unsigned() {
-            (format!("`{literal}` does not fit TIME"), "TIME holds T#0ms to T#49d17h2m47s295ms in this dialect")
-        } else {
-            let range = "TIME holds T#-24d20h31m23s648ms to T#24d20h31m23s647ms in this dialect";
-            (format!("`{literal}` does not fit TIME"), range)
-        };
+        let long = literal.split_once('#').map(|it| format!("LTIME#{}", it.1))?;
+        let message = format!("`{literal}` does not fit TIME");
+        let label = self.limits_in_words(Elementary::Time, span)?;
         let mut diagnostic = Diagnostic::new(Code::E0202, span, message).label(label);
         if nanoseconds >= 0 {
             diagnostic = diagnostic.help(format!("an LTIME holds it: declare one, and write `{long}`"));
@@ -271,4 +257,13 @@ impl Checker<'_, '_> {
         self.report(diagnostic);
         None
     }
+}
+
+/// A number of nanoseconds as a literal of its type.
+fn spelled(ty: Elementary, nanoseconds: i128) -> String {
+    let bits = i64::try_from(nanoseconds).or_else(|_| u64::try_from(nanoseconds).map(u64::cast_signed));
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    _ = staunch_runtime::format::time(&mut text, ty, bits.unwrap_or_default());
+    text
 }

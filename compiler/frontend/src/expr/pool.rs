@@ -248,8 +248,8 @@ impl<'s> Checker<'_, 's> {
     fn type_of_path(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
         let path = named.path()?;
         match path.as_slice() {
-            [name] => match Elementary::named(name.text) {
-                Some(ty) => Some(Type::Elementary(self.decl.dialect(name.span).rules().own(ty))),
+            [name] => match self.decl.dialect(name.span).rules().named(name.text) {
+                Some(ty) => Some(Type::Elementary(ty)),
                 None => self.decl.type_of_name(*name),
             },
             path => self.decl.type_of_path(path),

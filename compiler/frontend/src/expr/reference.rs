@@ -337,9 +337,9 @@ impl<'s> Checker<'_, 's> {
     fn type_meant(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Type>> {
         let path = expr.path().filter(|it| it.first().is_some_and(|it| self.scope.get(it.text).is_none()))?;
         if let [name] = path.as_slice()
-            && let Some(elementary) = Elementary::named(name.text)
+            && let Some(elementary) = self.decl.dialect(name.span).rules().named(name.text)
         {
-            return Some(Some(Type::Elementary(self.decl.dialect(name.span).rules().own(elementary))));
+            return Some(Some(Type::Elementary(elementary)));
         }
         let is_value = path.len() > 1
             && matches!(

@@ -297,14 +297,14 @@ fn are_long_times(a: Type, b: Type) -> bool {
 }
 
 /// Of a TIME or an LTIME, in nanoseconds: those that both systems have.
-fn times_of_both(pair: &Pair, [ty, other]: [Type; 2]) -> Option<Range> {
-    if ty != other && are_long_times(ty, other) {
-        return Some(Range { low: 0, high: i128::from(i64::MAX), step: 1 });
-    }
-    let counts = pair.sides.iter().filter_map(|it| it.dialect.rules().milliseconds()?.repr().range());
-    let (low, high) = counts.reduce(|a, b| (a.0.max(b.0), a.1.min(b.1))).filter(|_| ty == Type::TIME)?;
-    let step = i128::from(MILLISECOND);
-    Some(Range { low: low * step, high: high * step, step })
+fn times_of_both(pair: &Pair, types: [Type; 2]) -> Option<Range> {
+    let limits = |side: usize| {
+        let ty = types[side].elementary().filter(|it| it.is_duration())?;
+        pair.sides[side].dialect.rules().limits(ty)
+    };
+    let (a, b) = (limits(0)?, limits(1)?);
+    let is_whole = types[0] == Type::TIME && pair.sides.iter().any(|it| it.dialect.rules().milliseconds().is_some());
+    Some(Range { low: a.0.max(b.0), high: a.1.min(b.1), step: if is_whole { i128::from(MILLISECOND) } else { 1 } })
 }
 
 /// What to try of a type, those near a comparison first; and whether that is all of it.

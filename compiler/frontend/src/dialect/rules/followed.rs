@@ -5,6 +5,7 @@ use super::choice::{
     LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
     RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
+use staunch_runtime::time::MILLISECOND;
 use staunch_runtime::{Elementary, Value};
 
 /// How one dialect computes.
@@ -145,12 +146,27 @@ impl Rules {
         matches!(self.case_selector.choice, CaseSelector::Cut)
     }
 
-    /// The type that an elementary type's name means.
+    /// What a type of the standard is in the dialect.
     pub const fn own(&self, ty: Elementary) -> Elementary {
         match (ty, self.long_time.choice) {
             (Elementary::Ltime, LongTime::Unsigned) => Elementary::Ultime,
             _ => ty,
         }
+    }
+
+    /// The elementary type that a name means, in any case.
+    pub fn named(&self, name: &str) -> Option<Elementary> {
+        Elementary::named(name).map(|it| self.own(it))
+    }
+
+    /// The least and the greatest duration of a type, in nanoseconds.
+    pub fn limits(&self, duration: Elementary) -> Option<(i128, i128)> {
+        let (counted, unit) = match (duration, self.milliseconds()) {
+            (Elementary::Time, Some(count)) => (count, i128::from(MILLISECOND)),
+            _ => (duration, 1),
+        };
+        let (least, greatest) = counted.repr().range()?;
+        Some((least * unit, greatest * unit))
     }
 
     /// The integer type whose number of milliseconds a TIME is, where it is not of nanoseconds.

@@ -168,7 +168,8 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     }
     let widths = differences.iter().any(|[a, b]| {
         let [a, b] = [pair.scalar(0, *a), pair.scalar(1, *b)];
-        matches!(a.role, Role::Variable) && a.ty.elementary() != b.ty.elementary()
+        let counts = a.ty.elementary().is_none_or(|it| !it.is_duration());
+        matches!(a.role, Role::Variable) && counts && a.ty.elementary() != b.ty.elementary()
     });
     let pitfall = (counter.is_none() && widths).then_some(Pitfall::WIDTHS);
     Cause { counter, pitfall }
