@@ -8,7 +8,7 @@
 //! ```
 //!
 //! It applies to a loop that does not return: nobody sees the state before the loop has ended. A routine that it calls sees
-//! no variable that is taken ([`unseen`]). Where the loop can fault, the values are stored after a fault as well
+//! no variable that is taken (`unseen`). Where the loop can fault, the values are stored after a fault as well
 //! ([`Finally`](StatementKind::Finally)), so that the state is what it was when the loop faulted. A variable is taken if all
 //! that the loop touches is either this variable or, whatever indices and references are, another one.
 //!

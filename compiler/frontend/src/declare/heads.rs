@@ -242,8 +242,8 @@ impl<'s> Declarations<'s> {
                     | PouKind::Test => format!("`{title}`"),
                 };
                 Diagnostic::new(Code::E0403, name.span, format!("`{}` does not have {what}", name.text))
-                    .label("a class has all METHODs and PROPERTYs of the INTERFACEs that it IMPLEMENTS")
-                    .help("declare it here, or make the class ABSTRACT")
+                    .label("it needs every METHOD and PROPERTY of the INTERFACEs that it IMPLEMENTS")
+                    .help("declare it here, or make this ABSTRACT")
             }
         };
         self.report(error.other(wanted.span, "declared here"));

@@ -32,9 +32,13 @@ pub(crate) fn report(decl: &mut Declarations<'_>) {
         }
         let Some((_, place, instead)) = CHECKS.iter().find(|it| it.0.eq_ignore_ascii_case(name.text)) else { continue };
         decl.report(
-            Diagnostic::new(Code::W0527, name.span, format!("CODESYS calls `{}` {place}; here it is not", name.text))
-                .label(format!("{instead}, whatever this returns"))
-                .help("write what it guards against where it may happen: `IF divisor <> 0 THEN …`"),
+            Diagnostic::new(
+                Code::W0527,
+                name.span,
+                format!("CODESYS calls `{}` {place}; nothing calls it here", name.text),
+            )
+            .label(format!("{instead}, whatever this returns"))
+            .help("write what it guards against where it may happen: `IF divisor <> 0 THEN …`"),
         );
     }
 }

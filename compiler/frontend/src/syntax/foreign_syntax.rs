@@ -208,7 +208,7 @@ pub fn joins_name(input: &mut In<'_, '_, '_>) -> bool {
 pub fn pointer_sign(input: &mut In<'_, '_, '_>, sign: Span, operand: Span) {
     let (whole, text) = (sign.to(operand), input.text(operand));
     let (meant, what) = match input.text(sign) {
-        "*" => (format!("{text}^"), "follows a pointer with `^` after it"),
+        "*" => (format!("{text}^"), "dereferences a pointer with `^` after it"),
         _ => (format!("ADR({text})"), "takes an address with `ADR`"),
     };
     input.report(
@@ -261,8 +261,8 @@ pub fn point_first(input: &mut In<'_, '_, '_>) -> bool {
     let span = point.to(input.take());
     if is_third {
         input.report(
-            Diagnostic::new(Code::E0001, point, "a range is written with two points")
-                .label("this is the third one")
+            Diagnostic::new(Code::E0001, point, "a range is written with two dots")
+                .label("this is a third one")
                 .help("write `first..last`")
                 .fix(point, ""),
         );
