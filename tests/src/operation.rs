@@ -116,6 +116,7 @@ pub fn program(tasks: &[Task]) -> Program {
         files: vec![SourceFile { path: "operations.st".to_owned(), system: staunch_runtime::Family::Iec }],
         enums: Vec::new(),
         bounds: Vec::new(),
+        milliseconds: None,
         arrays: Vec::new(),
         interfaces: Vec::new(),
         references: Vec::new(),

@@ -56,6 +56,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         files: vec![SourceFile { path: "main.st".to_owned(), system: Family::Iec }],
         enums: vec![color()],
         bounds: vec![(-3, 7), (1, 9)],
+        milliseconds: None,
         arrays,
         interfaces: Vec::new(),
         references: Vec::new(),

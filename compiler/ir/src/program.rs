@@ -27,6 +27,8 @@ pub struct Program {
     pub enums: Vec<Enum>,
     /// The lower and upper limits of subranges, each pair once.
     pub bounds: Vec<(i128, i128)>,
+    /// The least and the greatest TIME in milliseconds, where a TIME is a number of those; any nanoseconds without.
+    pub milliseconds: Option<(i64, i64)>,
     pub arrays: Vec<Array>,
     /// The names of the INTERFACEs.
     pub interfaces: Vec<String>,

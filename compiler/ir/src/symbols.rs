@@ -25,6 +25,7 @@ pub const VERSION: u32 = 1;
 /// compiler   version
 /// machine    size  align
 /// file       number  path
+/// times      least  greatest          TIMEs in milliseconds, where they are whole ones
 /// enum       id  name  repr's Rust name  NAME=value …
 /// array      id  low  high  element type  stride
 /// struct     id  name  size            then its fields
@@ -84,6 +85,9 @@ impl Map<'_> {
         writeln!(self.text, "machine\t{}\t{}", machine.size, machine.align)?;
         for (number, file) in self.program.files.iter().enumerate() {
             writeln!(self.text, "file\t{number}\t{}", one_line(&file.path))?;
+        }
+        if let Some((least, greatest)) = self.program.milliseconds {
+            writeln!(self.text, "times\t{least}\t{greatest}")?;
         }
         self.enums()?;
         self.arrays()?;

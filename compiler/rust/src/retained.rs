@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 use staunch_ir::startup::{self, Event, Fate, Startup};
-use staunch_ir::{ArrayId, BlockId, EnumId, FieldId, StructId, Type};
+use staunch_ir::{ArrayId, BlockId, Elementary, EnumId, FieldId, StructId, Type};
 use staunch_runtime::firmware::RECORD_OVERHEAD;
 
 use crate::emitter::Emitter;
@@ -141,7 +141,7 @@ impl Walk<'_> {
             Type::Elementary(_) | Type::Subrange(..) | Type::String(_) | Type::Enum(_) if !fate.is_kept() => {
                 TokenStream::new()
             }
-            Type::Elementary(it) => self.value(place, path, it.name(), it.repr().size()),
+            Type::Elementary(it) => self.value(place, path, &self.elementary(it), it.repr().size()),
             Type::Subrange(it, bounds) => {
                 let (low, high) = self.emitter.program.bounds(bounds);
                 self.value(place, path, &format!("{}({low}..{high})", it.name()), it.repr().size());
@@ -158,6 +158,14 @@ impl Walk<'_> {
                 let number = Target { tokens: quote!(#number.0), is_reference: false };
                 self.value(&number, path, &ty, size)
             }
+        }
+    }
+
+    /// What the bytes of the type mean: a TIME is another, where other ones are.
+    fn elementary(&self, ty: Elementary) -> String {
+        match self.emitter.program.milliseconds {
+            Some((least, greatest)) if ty == Elementary::Time => format!("{}({least}..{greatest})", ty.name()),
+            Some(_) | None => ty.own_name().to_owned(),
         }
     }
 

@@ -2,7 +2,8 @@
 //! host) pass through here, so that compiled code finds values of its variables' types.
 
 use crate::map::{Array, Map, Type, Variable};
-use staunch_runtime::{Repr, StringType, Time, Value, ops};
+use staunch_runtime::time::MILLISECOND;
+use staunch_runtime::{Elementary, Repr, StringType, Time, Value, ops};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -10,7 +11,7 @@ use std::ops::Range;
 ///
 /// Written bytes become the nearest value of their variable's type: a BOOL that is not 0 is TRUE, a
 /// string's length is at most its capacity and the bytes after its end are 0, a number of a subrange
-/// is moved to its nearer bound, a date is moved to its midnight and a time of day into its day, and bytes that belong to no variable are 0. A number of an
+/// is moved to its nearer bound, a TIME to the milliseconds that the dialect has, a date is moved to its midnight and a time of day into its day, and bytes that belong to no variable are 0. A number of an
 /// enumeration stays, also where it has no name, and so does a REAL, also where it is not a number.
 #[derive(Clone, Debug)]
 pub struct Domain {
@@ -30,6 +31,8 @@ enum Node {
     Clock,
     /// A string of at most this many bytes.
     Text(StringType),
+    /// A TIME that is a number of milliseconds between these.
+    Milliseconds(i64, i64),
     Subrange {
         repr: Repr,
         low: i128,
@@ -90,7 +93,13 @@ impl Domain {
                     (at, node) = (at - part.offset, part.node);
                 }
                 Node::Any => return true,
-                Node::Bool | Node::Day | Node::Clock | Node::Text(_) | Node::Subrange { .. } | Node::Array { .. } => {
+                Node::Bool
+                | Node::Day
+                | Node::Clock
+                | Node::Milliseconds(..)
+                | Node::Text(_)
+                | Node::Subrange { .. }
+                | Node::Array { .. } => {
                     return at == 0;
                 }
             }
@@ -121,7 +130,9 @@ impl Domain {
             }
         };
         match &self.nodes[part.node] {
-            Node::Any | Node::Bool | Node::Day | Node::Clock | Node::Subrange { .. } => all(part.end()),
+            Node::Any | Node::Bool | Node::Day | Node::Clock | Node::Milliseconds(..) | Node::Subrange { .. } => {
+                all(part.end())
+            }
             Node::Text(ty) => {
                 let text = usize::from(ty.capacity) * ty.unit_size() as usize;
                 all(part.offset + size_of::<u16>() + text);
@@ -153,6 +164,9 @@ impl Domain {
             Node::Bool => bytes[0] = u8::from(bytes[0] != 0),
             Node::Day => settle_time(bytes, ops::start_of_day),
             Node::Clock => settle_time(bytes, ops::time_of_day),
+            Node::Milliseconds(least, greatest) => {
+                settle_time(bytes, |it| (it / MILLISECOND).clamp(*least, *greatest) * MILLISECOND);
+            }
             Node::Text(ty) => settle_text(bytes, *ty),
             Node::Subrange { repr, low, high } => settle_number(bytes, *repr, *low, *high),
             Node::Array { element, stride, count } => {
@@ -207,7 +221,7 @@ fn settle_text(bytes: &mut [u8], ty: StringType) {
     rest[usize::from(length) * ty.unit_size() as usize..].fill(0);
 }
 
-fn settle_time(bytes: &mut [u8], settled: fn(Time) -> Time) {
+fn settle_time(bytes: &mut [u8], settled: impl Fn(Time) -> Time) {
     if let Value::I64(time) = Value::read(Repr::I64, bytes) {
         Value::I64(settled(time)).write(bytes);
     }
@@ -241,6 +255,7 @@ impl Builder<'_> {
             Type::Elementary(it) if it.repr() == Repr::Bool => self.push(Node::Bool),
             Type::Elementary(it) if it.is_day() => self.push(Node::Day),
             Type::Elementary(it) if it.is_time_of_day() => self.push(Node::Clock),
+            Type::Elementary(Elementary::Time) => self.time(),
             Type::Elementary(it) => self.number(it.repr(), range),
             // Each use of a reference is checked.
             Type::Enum(_) | Type::Bit(_) | Type::Reference | Type::Characters(_) => self.push(Node::Any),
@@ -258,6 +273,10 @@ impl Builder<'_> {
     fn push(&mut self, node: Node) -> usize {
         self.nodes.push(node);
         self.nodes.len() - 1
+    }
+
+    fn time(&mut self) -> usize {
+        self.push(self.map.milliseconds.map_or(Node::Any, |(least, greatest)| Node::Milliseconds(least, greatest)))
     }
 
     fn number(&mut self, repr: Repr, range: Bounds) -> usize {
@@ -312,6 +331,17 @@ mod tests {
         // No name has this number, and no REAL these bits.
         assert_eq!(written("colour", &[0xFF; 2])[..2], [0xFF; 2]);
         assert_eq!(written("speed", &[0xFF; 4])[..4], [0xFF; 4]);
+    }
+
+    #[test]
+    fn a_time_is_moved_to_the_milliseconds_of_the_dialect() {
+        let domain = Domain::of(&Map { milliseconds: Some((0, 5000)), ..map() });
+        let at = offset_of("pause");
+        for (written, held) in [(-1, 0), (i64::MIN, 0), (1_999_999, 1_000_000), (i64::MAX, 5_000_000_000)] {
+            let mut state = vec![0; 128];
+            domain.write(&mut state, at, &i64::to_ne_bytes(written));
+            assert_eq!(state[at..at + 8], i64::to_ne_bytes(held), "{written}");
+        }
     }
 
     #[test]

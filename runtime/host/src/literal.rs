@@ -2,7 +2,9 @@
 
 use crate::map::{Enum, Map, Type};
 use crate::path::{Place, nearest, same};
-use staunch_runtime::literal::{self, LiteralErrorKind, check_real, duration, unsigned_duration};
+use crate::value::format_time;
+use staunch_runtime::literal::{self, LiteralError, LiteralErrorKind, check_real, duration, unsigned_duration};
+use staunch_runtime::time::MILLISECOND;
 use staunch_runtime::{Elementary, Repr, StringType, Value, ops};
 
 /// The bytes that `text` stands for in a variable; the error is a sentence without a full stop.
@@ -11,7 +13,8 @@ pub fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
         Type::String(it) => return string(text, it),
         Type::Characters(it) => return string(text, it).map(|it| without_length(it, map.size_of(place.ty))),
         Type::Elementary(Elementary::Ultime) => Value::U64(unsigned_time(text)?),
-        Type::Elementary(it) if it.is_duration() => Value::I64(time(text)?),
+        Type::Elementary(Elementary::Time) => Value::I64(time_of(map, text)?),
+        Type::Elementary(Elementary::Ltime) => Value::I64(long_time(text)?),
         Type::Elementary(it) if it.is_time() => Value::I64(date(text, it)?),
         Type::Elementary(Elementary::Bool) | Type::Bit(_) => Value::Bool(boolean(text)?),
         Type::Elementary(it) if it.repr().is_float() => float(text, it.name(), it.repr())?,
@@ -100,22 +103,37 @@ fn boolean(text: &str) -> Result<bool, String> {
 }
 
 pub(crate) fn time(text: &str) -> Result<i64, String> {
-    duration(after_prefix(text)?).map_err(|error| not_a_time(text, error.kind.text()))
+    duration_of(text, "TIME", duration)
+}
+
+/// A TIME that the program's dialect has.
+fn time_of(map: &Map, text: &str) -> Result<i64, String> {
+    let time = time(text)?;
+    let Some((least, greatest)) = map.milliseconds else { return Ok(time) };
+    if time % MILLISECOND == 0 && (least..=greatest).contains(&(time / MILLISECOND)) {
+        return Ok(time);
+    }
+    let [least, greatest] = [least, greatest].map(|it| format_time(it * MILLISECOND));
+    Err(format!("a TIME of this dialect has whole milliseconds, from {least} to {greatest}: `{text}` is none"))
+}
+
+fn long_time(text: &str) -> Result<i64, String> {
+    duration_of(text, "LTIME", duration)
 }
 
 /// An LTIME without a sign.
 fn unsigned_time(text: &str) -> Result<u64, String> {
-    unsigned_duration(after_prefix(text)?).map_err(|error| not_a_time(text, error.kind.text()))
+    duration_of(text, "LTIME", unsigned_duration)
 }
 
-fn after_prefix(text: &str) -> Result<&str, String> {
-    let parts = text.split_once('#');
+/// What is after the prefix of a duration.
+fn duration_of<T>(text: &str, ty: &str, read: fn(&str) -> Result<T, LiteralError>) -> Result<T, String> {
+    let wrong = |why: &str| format!("`{text}` is not {} {ty}: {why}", article(ty));
     let is_prefix = |it: &str| ["T", "TIME", "LT", "LTIME"].iter().any(|prefix| same(prefix, it));
-    parts.filter(|it| is_prefix(it.0)).map(|it| it.1).ok_or_else(|| not_a_time(text, "write `T#500ms`"))
-}
-
-fn not_a_time(text: &str, why: &str) -> String {
-    format!("`{text}` is not a TIME: {why}")
+    let Some((_, rest)) = text.split_once('#').filter(|it| is_prefix(it.0)) else {
+        return Err(wrong("write `T#500ms`"));
+    };
+    read(rest).map_err(|error| wrong(error.kind.text()))
 }
 
 /// A date or a time of day, with the prefix of its type or of the long form of it.
@@ -228,6 +246,19 @@ mod tests {
             assert_eq!(read("colour", text).unwrap(), 5_i16.to_ne_bytes());
         }
         assert_eq!(read("name", "ab").unwrap(), [2, 0, b'a', b'b', 0, 0]);
+    }
+
+    #[test]
+    fn a_time_is_one_of_the_dialect() {
+        let codesys = Map { milliseconds: Some((0, 5000)), ..map() };
+        let place = resolve(&codesys, &[0], "pause").unwrap();
+        assert_eq!(parse(&codesys, place, "T#5s").unwrap(), 5_000_000_000_i64.to_ne_bytes());
+        for text in ["T#-1ms", "T#500us", "T#5001ms"] {
+            let error = parse(&codesys, place, text).unwrap_err();
+            let range = "a TIME of this dialect has whole milliseconds, from T#0s to T#5s";
+            assert_eq!(error, format!("{range}: `{text}` is none"));
+            assert!(read("pause", text).is_ok());
+        }
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub struct Map {
     pub compiler: String,
     /// Source paths, as the user named them; a fault names one by its number.
     pub files: Vec<String>,
+    /// The least and the greatest TIME in milliseconds, where a TIME is a whole number of those.
+    pub(crate) milliseconds: Option<(i64, i64)>,
     pub(crate) enums: BTreeMap<u32, Enum>,
     pub(crate) arrays: BTreeMap<u32, Array>,
     pub(crate) structs: BTreeMap<u32, Structure>,
@@ -167,6 +169,10 @@ impl Map {
                 Ok(())
             }
             "file" => record.file().map(|path| self.files.push(path)),
+            "times" => {
+                self.milliseconds = Some((record.number()?, record.number()?));
+                Ok(())
+            }
             "enum" => {
                 let (id, enumeration) = record.enumeration()?;
                 self.enums.insert(id, enumeration);

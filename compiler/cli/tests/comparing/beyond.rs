@@ -265,6 +265,19 @@ fn an_assumption_lies_within_the_subrange() {
     assert_eq!(code, Some(2));
 }
 
+/// Nor is a time one that only one of the systems has.
+#[test]
+fn an_assumption_is_of_times_that_both_systems_have() {
+    let path = OWN.program("times", "VAR_INPUT t : TIME; END_VAR VAR o : BOOL; END_VAR\no := t < T#0s;");
+    let assume = OWN.path().join("beyond_times.txt");
+    for (line, code) in [("t T#-1s .. T#1s\n", 2), ("t T#0s .. T#1s\n", 0)] {
+        std::fs::write(&assume, line).expect("a file");
+        for [from, to] in [["iec", "codesys"], ["codesys", "iec"]] {
+            assert_eq!(moved(&path, from, to, &["--assume", &assume.display().to_string()]).0, Some(code), "{line}");
+        }
+    }
+}
+
 /// A guard behind an edge, as trap 14's advice has it, makes no edge: it is another program.
 #[test]
 fn a_guard_that_makes_no_edge_is_no_trap() {

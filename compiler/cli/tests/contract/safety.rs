@@ -197,10 +197,13 @@ fn a_file_of_retained_variables_keeps_its_link_and_has_one_owner() {
     while !folder.0.join("t.csv").exists() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    let second = folder.staunch("run main.st --scans 1 --retain l.ret");
+    fs::hard_link(folder.0.join("data/p.ret"), folder.0.join("h.ret")).unwrap();
+    let others = ["l.ret", "h.ret"].map(|it| (it, folder.staunch(&format!("run main.st --scans 1 --retain {it}"))));
     first.kill().unwrap();
     first.wait().unwrap();
-    has(&second.err(2), &["l.ret", "another process keeps its retained variables there"]);
+    for (name, second) in others {
+        has(&second.err(2), &[name, "another process keeps its retained variables there"]);
+    }
     folder.staunch("run main.st --scans 1 --retain l.ret -q").out(0);
 }
 

@@ -33,6 +33,7 @@ pub(crate) mod starts;
 mod structure;
 mod variable;
 
+use crate::Dialect;
 use crate::ast::{self, PouKind, VarKind};
 use crate::log::Log;
 use crate::names::Entry;
@@ -61,6 +62,7 @@ pub(crate) fn declare<'s>(
     for (file, dialect) in declarations.program.files.iter_mut().zip(&declarations.log.dialects) {
         file.system = dialect.family();
     }
+    declarations.program.milliseconds = milliseconds_of_all(&declarations.log.dialects);
     let log = &declarations.log;
     declarations.names.add_libraries(log.sources, |it| log.dialects.get(it).is_some_and(|it| it.has_own_libraries()));
     declarations.collect_namespaces(files);
@@ -153,6 +155,14 @@ impl<'s> Declarations<'s> {
         address::report_second_names(self, &uses);
         self.find_image(uses);
     }
+}
+
+/// The least and the greatest TIME in milliseconds, where that is what it is in all files.
+fn milliseconds_of_all(files: &[Dialect]) -> Option<(i64, i64)> {
+    let limits = |it: &Dialect| it.rules().milliseconds()?.repr().range();
+    let (first, rest) = files.split_first()?;
+    let (least, greatest) = limits(first).filter(|all| rest.iter().all(|it| limits(it) == Some(*all)))?;
+    Some((i64::try_from(least).ok()?, i64::try_from(greatest).ok()?))
 }
 
 /// The names in statements but for those of `own` variables, and what is after THIS.

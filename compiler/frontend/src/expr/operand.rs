@@ -134,7 +134,7 @@ impl<'s> Checker<'_, 's> {
                     format!("{} is expected, not a number", crate::diagnostic::wording::article(ty.name())),
                 )
                 .label(format!("expected {}", ty.name()))
-                .help(example(ty, value)),
+                .help(self.example(ty, value, span)),
             );
             return None;
         }
@@ -192,15 +192,17 @@ impl<'s> Checker<'_, 's> {
         }
         number.value(ty.repr())
     }
-}
 
-/// What a literal looks like of a type that a number is no value of.
-fn example(ty: Elementary, number: i128) -> String {
-    match ty {
-        Elementary::Date | Elementary::Ldate => "write the date: `D#2024-02-29`".to_owned(),
-        Elementary::Tod | Elementary::Ltod => "write the time of day: `TOD#23:59:59.5`".to_owned(),
-        Elementary::Dt | Elementary::Ldt => "write date and time of day: `DT#2024-02-29-23:59:59.5`".to_owned(),
-        _ => format!("write the unit: `T#{number}ms`"),
+    /// What a literal looks like of a type that a number is no value of.
+    fn example(&self, ty: Elementary, number: i128, span: Span) -> String {
+        let rules = self.decl.dialect(span).rules();
+        match ty {
+            Elementary::Date | Elementary::Ldate => "write the date: `D#2024-02-29`".to_owned(),
+            Elementary::Tod | Elementary::Ltod => "write the time of day: `TOD#23:59:59.5`".to_owned(),
+            Elementary::Dt | Elementary::Ldt => "write date and time of day: `DT#2024-02-29-23:59:59.5`".to_owned(),
+            _ if rules.limits(ty).is_some_and(|it| number < it.0) => "no duration is below `T#0s` here".to_owned(),
+            _ => format!("write the unit: `T#{number}ms`"),
+        }
     }
 }
 

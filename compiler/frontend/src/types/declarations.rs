@@ -686,6 +686,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         files,
         enums: Vec::new(),
         bounds: Vec::new(),
+        milliseconds: None,
         arrays: Vec::new(),
         interfaces: Vec::new(),
         references: Vec::new(),

@@ -1,5 +1,6 @@
 //! One process at a time writes a file of retained variables. The lock is a file of its own next to it, as the
-//! file itself is replaced. The system lets go of it when the process ends, in whatever way.
+//! file itself is replaced; the file is locked as well, for it may have other names. The system lets go of both when the
+//! process ends, in whatever way.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -13,13 +14,14 @@ pub(super) fn take(path: &Path) -> io::Result<Option<File>> {
     name.push(".lock");
     let opened = File::options().create(true).truncate(false).write(true).open(path.with_file_name(name));
     match opened {
-        Ok(file) => lock(&file).map(|()| Some(file)),
+        Ok(file) => hold(&file).map(|()| Some(file)),
         Err(_) => Ok(None),
     }
 }
 
+/// Locks a file until it is closed.
 #[cfg(unix)]
-fn lock(file: &File) -> io::Result<()> {
+pub(super) fn hold(file: &File) -> io::Result<()> {
     use std::os::fd::AsRawFd;
     const EXCLUSIVE: i32 = 2;
     const AT_ONCE: i32 = 4;
@@ -39,6 +41,6 @@ fn lock(file: &File) -> io::Result<()> {
 }
 
 #[cfg(not(unix))]
-fn lock(_: &File) -> io::Result<()> {
+pub(super) fn hold(_: &File) -> io::Result<()> {
     Ok(())
 }

@@ -84,6 +84,7 @@ impl Disk {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((disk, None)),
             Err(error) => return Err(error),
         };
+        lock::hold(file)?;
         let mut bytes = Vec::new();
         file.take(limit).read_to_end(&mut bytes)?;
         Ok((disk, Some(bytes)))

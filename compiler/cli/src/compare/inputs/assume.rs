@@ -54,8 +54,8 @@ fn text(path: &Path) -> Result<String, String> {
 impl Assumptions {
     pub fn read(path: &Path, pair: &Pair) -> Result<Self, String> {
         let text = text(path)?;
-        let map = machine::map(&pair.sides[0].program)?;
-        let inputs: Vec<_> = pair.inputs.iter().map(|it| Named::of(pair, &map, it)).collect();
+        let maps = [machine::map(&pair.sides[0].program)?, machine::map(&pair.sides[1].program)?];
+        let inputs: Vec<_> = pair.inputs.iter().map(|it| Named::of(pair, &maps, it)).collect();
         let found = Self::parse(&text, &inputs);
         found.map_err(|(line, text)| format!("{}:{line}: {text}", path.display()))
     }

@@ -20,18 +20,28 @@ pub struct Named<'a> {
 pub type Spelling<'a> = Box<dyn Fn(&str) -> Result<Value, String> + 'a>;
 
 impl<'a> Named<'a> {
-    pub fn of(pair: &Pair, map: &'a Map, input: &Input) -> Self {
+    pub fn of(pair: &Pair, maps: &'a [Map; 2], input: &Input) -> Self {
         let name = pair.path(input.scalars).to_owned();
-        let (path, repr) = (name.clone(), input.initial.repr());
-        let running: Vec<usize> = (0..map.instances.len()).collect();
+        let repr = input.initial.repr();
+        let sides = [0, 1].map(|side| {
+            let path = pair.scalar(side, input.scalars[side]).path.clone();
+            (pair.sides[side].dialect.name(), &maps[side], path)
+        });
         let texts: Vec<String> = input.texts.iter().take(input.named).map(Chars::to_string).collect();
         let is_text = !texts.is_empty();
         let value = move |text: &str| {
             if is_text {
                 return position(&texts, text);
             }
-            let place = staunch_host::place_of(map, &running, &path)?;
-            Ok(Value::read(repr, &staunch_host::bytes_of(map, place, text)?))
+            // Either system has the value.
+            let [a, b] = sides.each_ref().map(|(dialect, map, path)| {
+                let running: Vec<usize> = (0..map.instances.len()).collect();
+                let bytes = staunch_host::place_of(map, &running, path)
+                    .and_then(|place| staunch_host::bytes_of(map, place, text));
+                bytes.map_err(|it| format!("under --dialect {dialect}: {it}"))
+            });
+            b?;
+            Ok(Value::read(repr, &a?))
         };
         let full = pair.scalar(0, input.scalars[0]).full_name(&pair.sides[0].program);
         Self { full, name, is_text, subrange: subrange(pair, input.scalars), value: Box::new(value) }
