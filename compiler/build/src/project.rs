@@ -1,7 +1,7 @@
 //! `staunch.toml`: the settings of the command and of build scripts, for the folder it lies in and those
 //! below.
 
-use staunch_frontend::{Dialect, Level, Levels};
+use staunch_frontend::{Dialect, Level, Levels, nearest};
 use std::path::{Path, PathBuf};
 
 /// What a project file says. Paths are relative to its folder.
@@ -43,8 +43,7 @@ impl Project {
     /// The dialect that it names.
     pub fn dialect(&self) -> Result<Option<Dialect>, String> {
         let named = |name: &String| {
-            Dialect::named(name)
-                .ok_or_else(|| format!("{}: there is no dialect `{name}`", self.place("dialect", Some(name))))
+            Dialect::asked_for(name).map_err(|it| format!("{}: {it}", self.place("dialect", Some(name))))
         };
         self.dialect.as_ref().map(named).transpose()
     }
@@ -129,6 +128,28 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
     Some(start + further.unwrap_or(0) + 1)
 }
 
+/// The keys of `staunch.toml`.
+const SETTINGS: [&str; 18] = [
+    "dialect",
+    "files",
+    "libraries",
+    "program",
+    "cycle",
+    "loop-budget",
+    "ctu-stop-at-pv",
+    "openplc4-cd-edge",
+    "s7-ld",
+    "openplc-f-trig",
+    "implicit-narrowing",
+    "warn",
+    "deny",
+    "allow",
+    "message-format",
+    "color",
+    "quiet",
+    "verbose",
+];
+
 fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), String> {
     match key {
         "dialect" => project.dialect = Some(text(key, value)?),
@@ -152,9 +173,10 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "quiet" => project.quiet = flag(key, value)?,
         "verbose" => project.verbose = flag(key, value)?,
         _ => {
-            return Err(format!(
-                "there is no setting `{key}`; there are dialect, files, libraries, program, cycle, loop-budget, ctu-stop-at-pv, openplc4-cd-edge, s7-ld, openplc-f-trig, implicit-narrowing, warn, deny, allow, message-format, color, quiet and verbose"
-            ));
+            return Err(match nearest(key, SETTINGS.into_iter()) {
+                Some(near) => format!("there is no setting `{key}`; did you mean `{near}`?"),
+                None => format!("there is no setting `{key}`; there are {}", SETTINGS.join(", ")),
+            });
         }
     }
     Ok(())

@@ -1,5 +1,6 @@
 //! The command line, as `docs/cli.md` promises it.
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use staunch_build::Project;
 use staunch_frontend::Dialect;
@@ -440,12 +441,18 @@ fn named_dialect(name: &str) -> Result<Named, String> {
 }
 
 fn dialect(name: &str) -> Result<Dialect, String> {
-    Dialect::named(name).ok_or_else(|| {
-        "the dialects are iec, cscape, codesys, twincat, openplc, openplc4, logix and siemens".to_owned()
-    })
+    Dialect::asked_for(name)
 }
 
 /// The arguments of this process.
 pub fn parse(arguments: impl Iterator<Item = OsString>) -> Result<Cli, clap::Error> {
     Cli::try_parse_from(arguments)
+}
+
+/// What to type where a file is in the verb's place.
+pub fn file_without_verb(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::String(file)) = error.get(ContextKind::InvalidSubcommand) else { return None };
+    std::path::Path::new(file).exists().then(|| {
+        format!("`{file}` is a file; `staunch run {file}` runs it, `staunch check {file}` only checks it (--help lists more)")
+    })
 }

@@ -36,14 +36,12 @@ fn list() -> String {
 }
 
 fn one(asked: &str) -> Result<u8, String> {
-    let code = Code::named(asked).ok_or_else(|| {
-        let near = nearest(asked).iter().map(|it| format!("`{it}`")).collect::<Vec<_>>();
-        let help = if near.is_empty() {
-            "a code is E for an error or W for a lint, and four digits: `E0101`".to_owned()
-        } else {
-            format!("did you mean {}?", near.join(" or "))
-        };
-        format!("there is no diagnostic `{}`; {help}", asked)
+    let code = Code::named(asked).ok_or_else(|| match Code::meant(asked) {
+        Some(meant) => format!("there is no diagnostic `{asked}`; did you mean `{}`?", meant.name()),
+        None => format!(
+            "there is no diagnostic `{asked}`; a code is E for an error or W for a lint, and four digits, as E0101; \
+             `staunch explain` lists them"
+        ),
     })?;
     let kind = match code.severity() {
         Severity::Error => "error",
@@ -51,27 +49,4 @@ fn one(asked: &str) -> Result<u8, String> {
     };
     output::print(format!("{} ({kind}): {}\n\n{}", code.name(), code.title(), code.page()).as_bytes())?;
     Ok(0)
-}
-
-/// The codes that share most digits with `wrong`, of those with its first letter.
-fn nearest(wrong: &str) -> Vec<&'static str> {
-    let wrong = wrong.to_ascii_uppercase();
-    let shared = |code: &str| code.bytes().zip(wrong.bytes()).filter(|(a, b)| a == b).count();
-    let mut codes: Vec<_> =
-        Code::ALL.iter().map(|it| it.name()).filter(|it| it.bytes().next() == wrong.bytes().next()).collect();
-    codes.sort_by_key(|it| std::cmp::Reverse(shared(it)));
-    codes.truncate(3);
-    codes
-}
-
-#[cfg(test)]
-mod tests {
-    use super::nearest;
-
-    #[test]
-    fn a_wrong_code_has_neighbours() {
-        assert_eq!(nearest("e0102x")[0], "E0102");
-        assert_eq!(nearest("W0599").len(), 3);
-        assert!(nearest("Z9").is_empty());
-    }
 }

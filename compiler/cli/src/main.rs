@@ -4,6 +4,7 @@ mod apart;
 mod args;
 
 mod input;
+mod other_dialects;
 mod session;
 
 mod cache;
@@ -57,7 +58,10 @@ fn main() -> ExitCode {
     let cli = match args::parse(std::env::args_os()) {
         Ok(cli) => cli,
         Err(error) => {
-            let _ = error.print();
+            match args::file_without_verb(&error) {
+                Some(text) => output::tell(format_args!("error: {text}")),
+                None => _ = error.print(),
+            }
             let code = if error.use_stderr() { USAGE } else { 0 };
             return ExitCode::from(code);
         }

@@ -1,6 +1,7 @@
 //! One compilation: sources and settings in, diagnostics out, and the program where there is one.
 
 use crate::args::{Color, Common, Files, MessageFormat};
+use crate::other_dialects::{Advice, advice};
 use crate::{REJECTED, input, output};
 use staunch_build::{Project, listing};
 use staunch_frontend::{
@@ -36,7 +37,12 @@ pub struct Session {
 impl Session {
     /// Reads and compiles the sources, and prints what there is to say about them.
     pub fn start(common: &Common, files: &Files) -> Result<Self, String> {
-        Self::begin(common, files, staunch_frontend::compile).map(|(session, _)| session)
+        Self::begin(common, files, "--dialect", staunch_frontend::compile).map(|(session, _)| session)
+    }
+
+    /// As [`start`](Self::start), for a program that moves from this system.
+    pub fn start_to_move(common: &Common, files: &Files) -> Result<Self, String> {
+        Self::begin(common, files, "--from", staunch_frontend::compile).map(|(session, _)| session)
     }
 
     /// As [`start`](Self::start), for a program that others finish: what is `{external}` is theirs.
@@ -44,7 +50,7 @@ impl Session {
         let compile = |sources: &Sources, options: &Options| {
             staunch_frontend::compile(sources, &Options { is_run: false, ..options.clone() })
         };
-        Self::begin(common, files, compile).map(|(session, _)| session)
+        Self::begin(common, files, "--dialect", compile).map(|(session, _)| session)
     }
 
     /// As [`start`](Self::start), for the unit tests in the sources.
@@ -53,7 +59,7 @@ impl Session {
             let coverage = covered(sources, is_covered);
             staunch_frontend::compile(sources, &Options { tests: true, coverage, ..options.clone() })
         };
-        Self::begin(common, files, compile).map(|(session, _)| session)
+        Self::begin(common, files, "--dialect", compile).map(|(session, _)| session)
     }
 
     /// Changed sources, as tests or as what `run` would run.
@@ -75,7 +81,7 @@ impl Session {
             let diagnostics = staunch_frontend::check(sources, &Options { is_run: false, ..Options::clone(options) });
             Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
         };
-        let (session, errors) = Self::begin(common, files, check)?;
+        let (session, errors) = Self::begin(common, files, "--dialect", check)?;
         if errors > 0 {
             return Ok(REJECTED);
         }
@@ -87,10 +93,11 @@ impl Session {
         Ok(0)
     }
 
-    /// With the number of errors.
+    /// With the number of errors. `flag` is what names the dialect on the command line.
     fn begin(
         common: &Common,
         files: &Files,
+        flag: &str,
         compile: impl FnOnce(&Sources, &Options) -> Compilation,
     ) -> Result<(Self, usize), String> {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
@@ -112,7 +119,8 @@ impl Session {
         let levels = levels(common, &project)?;
         let sources = input::read(&named, &seen(&project, "libraries", &project.libraries)?)?;
         let start = Instant::now();
-        let compilation = compile(&sources, &options(common, &project)?);
+        let options = options(common, &project)?;
+        let compilation = compile(&sources, &options);
         let compile_time = start.elapsed();
         let first = match named.first().filter(|it| listing::is_list(it) && !it.is_dir()) {
             Some(project) => input::shown(project),
@@ -120,7 +128,14 @@ impl Session {
         };
         let mut session = Self::new(common.with(&project), project, PathBuf::from(first), sources, compile_time);
         session.say_what_was_read();
+        let advice = session.advice(&compilation, &options);
+        if let Some(fewer @ Advice::Fewer { .. }) = &advice {
+            output::tell(format_args!("{}\n", fewer.text(flag)));
+        }
         let errors = session.accept(compilation, &levels, &[])?;
+        if let Some(accepted @ Advice::Accepted(_)) = &advice {
+            output::tell(accepted.text(flag));
+        }
         Ok((session, errors))
     }
 
@@ -129,6 +144,13 @@ impl Session {
         let (program, tests, coverage) = (None, Vec::new(), Vec::new());
         let (renamed, diagnostics) = (Vec::new(), Vec::new());
         Self { common, project, first, sources, program, tests, coverage, renamed, diagnostics, compile_time }
+    }
+
+    /// Which dialects take the sources that this one rejects, for people.
+    fn advice(&self, compilation: &Compilation, options: &Options) -> Option<Advice> {
+        let is_for_people = self.common.format() == MessageFormat::Human && !self.common.quiet;
+        let errors = compilation.diagnostics.iter().filter(|it| it.severity == Severity::Error).count();
+        if is_for_people { advice(&self.sources, options, errors) } else { None }
     }
 
     /// With `-v`: the project file and the sources.

@@ -4,7 +4,7 @@ pub(crate) mod library;
 pub(crate) mod missing;
 pub mod rules;
 
-use crate::spelling::Key;
+use crate::spelling::{Key, nearest};
 use rustc_hash::FxHashMap;
 use staunch_ir::BlockId;
 use staunch_runtime::{BLOCKS, BlockInfo, BlockOption, Family};
@@ -69,6 +69,15 @@ impl Dialect {
 
     pub fn named(name: &str) -> Option<Self> {
         Self::names().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
+    }
+
+    /// The dialect of that name; the error is a sentence without a full stop.
+    pub fn asked_for(name: &str) -> Result<Self, String> {
+        let names = || Self::names().map(|it| it.0);
+        Self::named(name).ok_or_else(|| match nearest(name, names()) {
+            Some(near) => format!("there is no dialect `{name}`; did you mean `{near}`?"),
+            None => format!("there is no dialect `{name}`; there are {}", names().collect::<Vec<_>>().join(", ")),
+        })
     }
 
     /// Whose rules its variables follow, and whose blocks its bare names mean before those that all systems share.

@@ -46,6 +46,7 @@ pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::{OPEN_OPTIONS, OpenOption, Options};
 pub use source::{Source, Sources, Span};
+pub use spelling::nearest;
 pub use syntax::{parse, parse_file};
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
 pub use types::coverage::{Condition, CoverageKind, CoveragePoint, Decision, Formula};

@@ -29,7 +29,7 @@ impl Hash for Key<'_> {
 }
 
 /// The candidate that `name` was probably meant to be.
-pub(crate) fn nearest<'c>(name: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
+pub fn nearest<'c>(name: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     let limit = match name.chars().count() {
         // Of two letters, one edit makes another name.
         0..=2 => 0,

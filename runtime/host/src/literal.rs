@@ -126,14 +126,16 @@ fn unsigned_time(text: &str) -> Result<u64, String> {
     duration_of(text, "LTIME", unsigned_duration)
 }
 
-/// What is after the prefix of a duration.
+/// `T#500ms`, `500ms` or `0`.
 fn duration_of<T>(text: &str, ty: &str, read: fn(&str) -> Result<T, LiteralError>) -> Result<T, String> {
     let wrong = |why: &str| format!("`{text}` is not {} {ty}: {why}", article(ty));
     let is_prefix = |it: &str| ["T", "TIME", "LT", "LTIME"].iter().any(|prefix| same(prefix, it));
-    let Some((_, rest)) = text.split_once('#').filter(|it| is_prefix(it.0)) else {
-        return Err(wrong("write `T#500ms`"));
-    };
-    read(rest).map_err(|error| wrong(error.kind.text()))
+    match text.split_once('#') {
+        Some((prefix, rest)) if is_prefix(prefix) => read(rest).map_err(|error| wrong(error.kind.text())),
+        Some(_) => Err(wrong("write `T#500ms`")),
+        None if text == "0" => read("0s").map_err(|_| wrong("write `T#0s`")),
+        None => read(text).map_err(|_| wrong("write `T#500ms` or `500ms`")),
+    }
 }
 
 /// A date or a time of day, with the prefix of its type or of the long form of it.
@@ -239,7 +241,7 @@ mod tests {
         for text in ["1.5", "REAL#1.5", "15e-1", "1.500"] {
             assert_eq!(read("speed", text).unwrap(), 1.5_f32.to_ne_bytes());
         }
-        for text in ["T#1s500ms", "TIME#1.5s", "LTIME#1500ms"] {
+        for text in ["T#1s500ms", "TIME#1.5s", "LTIME#1500ms", "1500ms", "1.5s"] {
             assert_eq!(read("pause", text).unwrap(), 1_500_000_000_i64.to_ne_bytes());
         }
         for text in ["Green", "color#GREEN", "5"] {
@@ -281,7 +283,7 @@ mod tests {
             error("pause", "T#1.5s200ms"),
             "`T#1.5s200ms` is not a TIME: only the last unit of a duration has a fraction"
         );
-        assert_eq!(error("pause", "5"), "`5` is not a TIME: write `T#500ms`");
+        assert_eq!(error("pause", "5"), "`5` is not a TIME: write `T#500ms` or `500ms`");
         assert_eq!(error("colour", "Gren"), "Color has no value `Gren`; did you mean `Green`?");
         assert_eq!(error("name", "abcde"), "the text has 5 bytes, a STRING[4] holds 4");
         assert_eq!(error("c", "1"), "it is a whole CTU: name a member or an element");

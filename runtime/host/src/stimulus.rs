@@ -65,12 +65,17 @@ enum Column {
     Time,
     Event,
     Variable(Place),
+    /// Of a trace, what is not an input: the program computes it.
+    Computed(usize),
     /// `|`: what is right of it is expected, which is no matter of a stimulus.
     Bar,
 }
 
 /// Parts what goes in from what is expected to come out.
 pub(crate) const BAR: &str = "|";
+
+/// The column of a trace that says when its scan ran.
+const MILLISECONDS: &str = "time_ms";
 
 impl Stimulus {
     pub fn read(path: &Path, map: &Map, running: &[usize]) -> Result<Self, Error> {
@@ -84,7 +89,8 @@ impl Stimulus {
     /// `path` is for messages.
     pub fn parse(path: &Path, text: &str, map: &Map, running: &[usize]) -> Result<Self, Error> {
         let decimal_comma = csv::has_semicolons(text);
-        let mut parser = Parser { path, map, running, columns: Vec::new(), is_numbered: false, decimal_comma };
+        let mut parser =
+            Parser { path, map, running, columns: Vec::new(), is_numbered: false, is_trace: false, decimal_comma };
         let open = |(line, column)| parser.error(line, column, "a quote that is not closed".to_owned());
         let cells = csv::parse(text).map_err(open)?;
         let Some((header, rows)) = cells.split_first() else {
@@ -141,6 +147,8 @@ struct Parser<'a> {
     columns: Vec<Column>,
     /// There is neither a scan nor a time: the rows are scans 1, 2, 3.
     is_numbered: bool,
+    /// It is a trace: what was given is given again.
+    is_trace: bool,
     /// Reals are written `3,5`.
     decimal_comma: bool,
 }
@@ -157,6 +165,7 @@ impl Parser<'_> {
     fn header(&mut self, cells: &[Cell]) -> Result<(), Error> {
         let bar = cells.iter().position(|it| it.text == BAR);
         let is_clock = |it: &Cell| same(&it.text, "scan") || same(&it.text, "time");
+        self.is_trace = cells.get(1).is_some_and(|it| same(&it.text, MILLISECONDS));
         self.is_numbered = bar.is_some() && !cells.first().is_some_and(is_clock);
         for (position, cell) in cells.iter().take(bar.unwrap_or(cells.len())).enumerate() {
             let column = self.column(position, cell)?;
@@ -174,13 +183,24 @@ impl Parser<'_> {
         match cell.text.as_str() {
             text if position < 2 && same(text, "scan") && !self.columns.contains(&Column::Scan) => Ok(Column::Scan),
             text if position < 2 && same(text, "time") && !self.columns.contains(&Column::Time) => Ok(Column::Time),
+            text if position == 1 && same(text, MILLISECONDS) => Ok(Column::Time),
             text if same(text, "@event") => Ok(Column::Event),
             text if self.is_numbered => self.variable(cell, text),
             _ if position == 0 => {
                 Err(self.at(cell, format!("the first column is `scan` or `time`, not `{}`", cell.text)))
             }
             _ if !self.columns.iter().any(is_clock) => Err(self.at(cell, "the first column is `scan` or `time`")),
+            text if self.is_trace => self.of_trace(position, cell, text),
             text => self.variable(cell, text),
+        }
+    }
+
+    /// A column of a trace: an input that can be given.
+    fn of_trace(&self, position: usize, cell: &Cell, name: &str) -> Result<Column, Error> {
+        let place = path::resolve(self.map, self.running, name).map_err(|text| self.at(cell, text))?;
+        match place.input && !place.constant && place.ty != Type::Reference {
+            true => self.variable(cell, name),
+            false => Ok(Column::Computed(position)),
         }
     }
 
@@ -203,7 +223,7 @@ impl Parser<'_> {
         } else if let Some(surplus) = cells.get(self.columns.len()) {
             return Err(self.at(surplus, format!("the header has only {} columns", self.columns.len())));
         }
-        for (cell, column) in cells.iter().zip(&self.columns).filter(|(cell, _)| !cell.is_empty()) {
+        for (cell, column) in cells.iter().zip(&self.columns).filter(|(cell, _)| self.is_trace || !cell.is_empty()) {
             match column {
                 Column::Scan => row.scan = Some(self.scan(cell)?),
                 Column::Time => {
@@ -212,7 +232,7 @@ impl Parser<'_> {
                 }
                 Column::Event => row.event = Some(self.event(cell)?),
                 Column::Variable(place) => row.writes.push(self.write(cell, *place)?),
-                Column::Bar => {}
+                Column::Computed(_) | Column::Bar => {}
             }
         }
         match (row.scan, row.time, cells.first()) {
@@ -230,7 +250,8 @@ impl Parser<'_> {
     }
 
     fn time(&self, cell: &Cell) -> Result<Time, Error> {
-        match literal::time(&cell.text) {
+        let in_milliseconds = self.is_trace.then(|| format!("{}ms", cell.text));
+        match literal::time(in_milliseconds.as_deref().unwrap_or(&cell.text)) {
             Ok(time) if time < 0 => Err(self.at(cell, "time starts at T#0s")),
             Ok(time) => Ok(time),
             Err(text) => Err(self.at(cell, text)),
@@ -296,6 +317,16 @@ mod tests {
         assert_eq!(third.writes, up(0));
     }
 
+    /// What a program computes is not given to it; a text may have become empty.
+    #[test]
+    fn a_trace_gives_its_inputs() {
+        let stimulus = read("scan,time_ms,up,c.CV,name\n1,0,TRUE,5,a\n2,10.25,FALSE,6,\n").unwrap();
+        let [first, second] = stimulus.rows.as_slice() else { panic!("{stimulus:?}") };
+        let up = |value| vec![Write { offset: offset_of("up"), bytes: vec![value], bit: None, input: true }];
+        assert_eq!((first.scan, first.time, &first.writes), (Some(1), Some(0), &up(1)));
+        assert_eq!((second.scan, second.time, &second.writes), (Some(2), Some(10_250_000), &up(0)));
+    }
+
     #[test]
     fn a_comma_is_a_decimal_sign_between_semicolons() {
         let stimulus = read("scan;speed;c.CV\n1;-3,5;4\n2;1,5E2;\n3;2.5;\n").unwrap();
@@ -341,7 +372,7 @@ mod tests {
             ("scan,limit\n", "in.csv:1:6: `limit` is CONSTANT: nothing writes it"),
             ("scan,up\n0,1\n", "in.csv:2:1: scans count from 1"),
             ("scan,up\nx,1\n", "in.csv:2:1: `x` is not the number of a scan"),
-            ("time,up\n5,1\n", "in.csv:2:1: `5` is not a TIME: write `T#500ms`"),
+            ("time,up\n5,1\n", "in.csv:2:1: `5` is not a TIME: write `T#500ms` or `500ms`"),
             ("scan,up\n1,5\n", "in.csv:2:3: `5` is not a BOOL: write TRUE or FALSE"),
             ("scan,up\n1,1,1\n", "in.csv:2:5: the header has only 2 columns"),
             ("scan,up\n,1\n", "in.csv:2:1: the row does not say when: its first cell is empty"),

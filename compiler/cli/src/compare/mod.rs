@@ -45,7 +45,7 @@ use verdict::{Judged, Other, Verdict, WithoutRun, judge};
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
     let common = Common { dialect: Some(args.from.dialect), ..common.clone() };
-    let from = Session::start(&common, &args.files)?;
+    let from = Session::start_to_move(&common, &args.files)?;
     crate::apart::compare(&from, args)?;
     fixed::check(
         &from.sources,

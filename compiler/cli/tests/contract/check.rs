@@ -184,7 +184,9 @@ fn a_setting_that_is_wrong_is_reported_at_its_line() {
         ("cycle = \"10\"", 2, "`cycle`: `10` is not a time above zero: write `10ms`"),
         ("cycle = \"0ms\"", 2, "is not a time above zero"),
         ("cycle = 10", 2, "`cycle` is a text in quotes"),
-        ("dialect = \"iecc\"", 2, "there is no dialect `iecc`"),
+        ("dialect = \"iecc\"", 2, "there is no dialect `iecc`; did you mean `iec`?"),
+        ("dialekt = \"iec\"", 2, "there is no setting `dialekt`; did you mean `dialect`?"),
+        ("allow = [\"W501\"]", 2, "there is no lint `W501`; did you mean `W0501`?"),
         ("deny = [\n  \"W0501\",\n  \"E0203\",\n]", 4, "E0203 is an error"),
         ("quiet = \"yes\"", 2, "`quiet` is true or false"),
         ("libraries = [\"no\"]", 2, "there is no file or folder `no`"),
@@ -194,6 +196,27 @@ fn a_setting_that_is_wrong_is_reported_at_its_line() {
     }
     folder.write("staunch.toml", "files = [\n\"p.st\",\n\"q.st\"]\n");
     has(&folder.staunch("check").err(2), &["staunch.toml:3: there is no file or folder `q.st`"]);
+}
+
+/// A program in the wrong dialect is not to be rewritten.
+#[test]
+fn the_dialect_that_accepts_the_sources_is_named_last() {
+    let text = "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE); w := c.CV; END_PROGRAM";
+    let folder = Folder::with("accepting", &[("main.st", text), ("wrong.st", "PROGRAM Main x := 1; END_PROGRAM")]);
+    let last = |line: &str| folder.staunch(line).err(1).lines().last().unwrap_or_default().to_owned();
+    for verb in ["check", "run", "build", "test"] {
+        assert_eq!(last(&format!("{verb} main.st")), "help: accepted with `--dialect codesys`", "{verb}");
+    }
+    has(&folder.staunch("compare main.st --from iec --to logix").err(1), &["help: accepted with `--from codesys`"]);
+    assert_eq!(last("check wrong.st"), "error: rejected with 1 error");
+    assert_eq!(last("check main.st -q"), "error: rejected with 2 errors");
+    assert!(!folder.staunch("check main.st --message-format json").out(1).contains("accepted"));
+}
+
+#[test]
+fn a_file_without_a_verb_is_what_to_type() {
+    let folder = Folder::with("verbless", &[("main.st", COUNTER)]);
+    has(&folder.staunch("main.st").err(2), &["error: `main.st` is a file; `staunch run main.st` runs it"]);
 }
 
 #[test]

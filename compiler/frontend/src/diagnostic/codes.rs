@@ -1,6 +1,7 @@
 //! The codes of errors and lints, one row each.
 
 use super::Severity;
+use crate::spelling::nearest;
 
 macro_rules! codes {
     ($($code:ident $severity:ident $title:literal;)*) => {
@@ -37,6 +38,13 @@ macro_rules! codes {
 
             pub fn named(name: &str) -> Option<Self> {
                 Self::ALL.iter().copied().find(|it| it.name().eq_ignore_ascii_case(name))
+            }
+
+            /// The code that a misspelt one was probably meant to be: zeros are missing, or a digit is wrong.
+            pub fn meant(name: &str) -> Option<Self> {
+                let (letter, digits) = name.split_at_checked(1)?;
+                let padded = format!("{letter}{digits:0>4}");
+                Self::named(&padded).or_else(|| Self::named(nearest(name, Self::ALL.iter().map(|it| it.name()))?))
             }
         }
     };

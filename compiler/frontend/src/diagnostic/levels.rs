@@ -52,6 +52,9 @@ pub(crate) fn lint(name: &str) -> Result<Option<Code>, String> {
     match Code::named(name) {
         Some(code) if code.severity() == Severity::Warning => Ok(Some(code)),
         Some(code) => Err(format!("{} is an error; only lints (W…) have levels", code.name())),
-        None => Err(format!("there is no lint `{name}`")),
+        None => Err(match Code::meant(name).filter(|it| it.severity() == Severity::Warning) {
+            Some(meant) => format!("there is no lint `{name}`; did you mean `{}`?", meant.name()),
+            None => format!("there is no lint `{name}`; `staunch explain` lists them"),
+        }),
     }
 }
