@@ -33,7 +33,7 @@ fn commands(document: &str) -> Vec<Shown> {
             is_ours = false;
         } else if let Some(command) = line.strip_prefix("$ ").filter(|_| in_fence) {
             let command =
-                command.strip_prefix("cargo run -q -p staunch -- ").or_else(|| command.strip_prefix("staunch "));
+                command.strip_prefix("cargo run -p staunch -- ").or_else(|| command.strip_prefix("staunch "));
             is_ours = command.is_some();
             let words = command.into_iter().map(|it| it.split(' ').map(|it| it.trim_matches('\'').to_owned()));
             commands.extend(words.map(|it| Shown { arguments: it.collect(), lines: Vec::new() }));
@@ -167,4 +167,34 @@ fn links_in_documents_lead_somewhere() {
         }
     }
     assert!(broken.is_empty(), "\n{broken}");
+}
+
+/// What is above a picture in a document, which says how it is drawn.
+const DRAWN: &str = "<!-- drawn by: staunch ";
+
+/// A picture in a document is what the command above it draws; `STAUNCH_BLESS=1` draws it again.
+#[test]
+fn pictures_in_documents_are_drawn_by_the_command() {
+    let mut paths = Vec::new();
+    documents(&project(), &mut paths);
+    let mut count = 0;
+    for path in paths {
+        let text = read(&path);
+        let lines: Vec<&str> = text.lines().collect();
+        for pair in lines.windows(2) {
+            let Some(command) = pair[0].strip_prefix(DRAWN).and_then(|it| it.strip_suffix(" -->")) else { continue };
+            let target = pair[1].split_once("](").and_then(|it| it.1.strip_suffix(')'));
+            let picture = path.parent().expect("a file is in a folder").join(target.expect("a picture is below"));
+            let drawn = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("picture_{count}.svg"));
+            let arguments: Vec<String> = command.split(' ').map(str::to_owned).collect();
+            let output = staunch(&arguments, &["--trace", &drawn.display().to_string()]);
+            assert!(output.status.success(), "{command}: {}", String::from_utf8_lossy(&output.stderr));
+            if std::env::var_os("STAUNCH_BLESS").is_some() {
+                fs::copy(&drawn, &picture).expect("the picture is written");
+            }
+            assert!(read(&picture) == read(&drawn), "{} is not what `staunch {command}` draws", picture.display());
+            count += 1;
+        }
+    }
+    assert!(count >= 1, "no document has a picture");
 }
