@@ -32,8 +32,7 @@ fn commands(document: &str) -> Vec<Shown> {
             in_fence = line == "```console";
             is_ours = false;
         } else if let Some(command) = line.strip_prefix("$ ").filter(|_| in_fence) {
-            let command =
-                command.strip_prefix("cargo run -p staunch -- ").or_else(|| command.strip_prefix("staunch "));
+            let command = command.strip_prefix("cargo run -p staunch -- ").or_else(|| command.strip_prefix("staunch "));
             is_ours = command.is_some();
             let words = command.into_iter().map(|it| it.split(' ').map(|it| it.trim_matches('\'').to_owned()));
             commands.extend(words.map(|it| Shown { arguments: it.collect(), lines: Vec::new() }));

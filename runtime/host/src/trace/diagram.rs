@@ -147,7 +147,7 @@ fn unchanged<'a>(lanes: impl Iterator<Item = (&'a Column, &'a Lane)>, scale: &Sc
     for (column, lane) in lanes {
         let value = lane.pieces.first().map_or_else(String::new, |it| visible(&it.last.text));
         let value = if value.is_empty() { "''" } else { &value };
-        let text = format!("{} = {value}", column.heading);
+        let text = shortened(format!("{} = {value}", column.heading), room.saturating_sub("Unchanged: ".len()));
         let is_last = lines.len() >= UNCHANGED;
         match lines.last_mut() {
             None => lines.push(format!("Unchanged: {text}")),
@@ -255,7 +255,7 @@ impl Strip<'_> {
         let _ = writeln!(self.svg, "<path class=\"number\" d=\"{path}\"/>");
         bands.into_iter().for_each(|(from, to, top, bottom)| self.band("swing", from, to, top, bottom));
         // Above its line where there is room, else below.
-        self.labels(|piece| match level(piece.last.number) - 3.0 {
+        self.labels(false, |piece| match level(piece.last.number) - 3.0 {
             at if at < y + 8.0 => at + 14.0,
             at => at,
         });
@@ -277,21 +277,32 @@ impl Strip<'_> {
                  L{right:.1} {low:.1}H{left:.1}Z\"/>"
             );
         }
-        self.labels(|_| y + height / 2.0 + 4.0);
+        self.labels(true, |_| y + height / 2.0 + 4.0);
     }
 
     /// The values, where there is room for them.
-    fn labels(&mut self, y: impl Fn(&Piece) -> f64) {
+    fn labels(&mut self, is_text: bool, y: impl Fn(&Piece) -> f64) {
         let mut labels = String::new();
         for (_, settled, to, piece) in self.spans() {
             let room = ((to - settled - 6.0) / (CHARACTER * 0.92)) as usize;
             let shown = visible(&piece.last.text);
+            // The first digits of a number are another number.
+            let shown = if is_text { shortened(shown, room) } else { shown };
             if !shown.is_empty() && shown.chars().count() <= room {
                 let (x, y) = (settled + 5.0, y(piece));
                 let _ = writeln!(labels, "<text class=\"value\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escape(&shown));
             }
         }
         self.svg.push_str(&labels);
+    }
+}
+
+/// A text that ends in `…` where there is not enough room for it.
+fn shortened(text: String, room: usize) -> String {
+    match room {
+        // A letter and `…` say nothing.
+        _ if text.chars().count() <= room || room < 3 => text,
+        _ => text.chars().take(room - 1).chain(['…']).collect(),
     }
 }
 
@@ -389,6 +400,17 @@ mod tests {
             |out| Box::new(Diagram::new(out, &subject)),
         );
         assert!(svg.len() < 500_000, "{}", svg.len());
+    }
+
+    /// A number is whole or not shown: its first digits are another one.
+    #[test]
+    fn a_text_without_room_ends_in_dots() {
+        let map = map();
+        let subject = subject(&map, "name", "Narrow");
+        let texts: Vec<&str> = ["abcd", "efgh"].into_iter().cycle().take(40).collect();
+        let svg = texts_written(&subject, &texts, |out| Box::new(Diagram::new(out, &subject)));
+        assert!(svg.contains(">ab…</text>") && svg.contains(">ef…</text>"), "{svg}");
+        assert_eq!(shortened("12345".to_owned(), 2), "12345");
     }
 
     #[test]
