@@ -202,6 +202,9 @@ pub struct Run {
     // In a doc comment `[1,2]` would be a link.
     #[arg(long, value_name = "NAMES", help = "The variables to show, in order: a,b.CV,m[1,2]")]
     pub vars: Option<String>,
+    /// Two or three numbers that a picture (`--trace OUT.svg`) shows in one lane: a,b; may be repeated
+    #[arg(long, value_name = "NAMES", requires = "trace")]
+    pub overlay: Vec<String>,
     /// What runs it
     #[arg(long, value_enum, default_value_t = Backend::Native)]
     pub backend: Backend,

@@ -53,6 +53,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         stimulus: args.stimulus.clone(),
         trace: args.trace.clone(),
         vars: args.vars.clone(),
+        overlay: args.overlay.clone(),
         from: args.from,
         to: args.to,
         json: session.common.format() == MessageFormat::Json,
@@ -82,6 +83,7 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
     for (flag, value) in texts {
         value.map(|it| command.arg(flag).arg(it));
     }
+    args.overlay.iter().for_each(|it| _ = command.arg("--overlay").arg(it));
     let paths = [("--stimulus", &args.stimulus), ("--trace", &args.trace), ("--retain", &args.retain)];
     for (flag, path) in paths {
         path.as_ref().map(|it| command.arg(flag).arg(it));

@@ -17,7 +17,7 @@ pub enum Wish {
     Version,
 }
 
-const FLAGS: [(&str, &str, &str); 18] = [
+const FLAGS: [(&str, &str, &str); 19] = [
     ("--program", "NAME", "Run this program only"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time between two scans, as 10ms"),
@@ -26,7 +26,8 @@ const FLAGS: [(&str, &str, &str); 18] = [
     ("--trace", "FILE", "Write a row a scan, as .csv, .vcd, .svg or .html; - for standard output"),
     ("--from", "MOMENT", "Show the scans from this one or this time on, as 120 or 1s200ms"),
     ("--to", "MOMENT", "Show the scans to this one or this time"),
-    ("--vars", "NAMES", "Variables to show, apart by commas"),
+    ("--vars", "NAMES", "Variables to show, separated by commas"),
+    ("--overlay", "NAMES", "Numbers that a .svg shows in one lane, as a,b; may be repeated"),
     ("--retain", "FILE", "Keep retained variables in a file"),
     ("--retain-within", "TIME|scan", "In real time, how soon a change is on disk; without, 1s"),
     ("--realtime", "", "Wait for the time at which each scan is due"),
@@ -60,6 +61,7 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             "--stimulus" => options.stimulus = Some(value()?.into()),
             "--trace" => options.trace = Some(value()?.into()),
             "--vars" => options.vars = Some(utf8(value()?)?),
+            "--overlay" => options.overlay.push(utf8(value()?)?),
             "--from" => options.from = Some(parse_moment(&utf8(value()?)?)?),
             "--to" => options.to = Some(parse_moment(&utf8(value()?)?)?),
             "--message-format" => options.json = is_json(&utf8(value()?)?)?,

@@ -2,6 +2,7 @@
 
 use crate::map::{Map, Section, StructureKind, Type, Variable};
 use crate::path::{self, Place};
+use staunch_runtime::Repr;
 use std::collections::HashSet;
 
 /// One elementary value.
@@ -35,6 +36,34 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
         }
     }
     Ok(columns)
+}
+
+/// Most numbers that one lane shows: more cannot be told from each other.
+const MOST_OVERLAID: usize = 3;
+
+/// Which columns are drawn in one lane. The error is a sentence without a full stop.
+pub(crate) fn overlays(columns: &[Column], wanted: &[String]) -> Result<Vec<Vec<usize>>, String> {
+    let mut taken = HashSet::new();
+    let mut place = |name: &str| {
+        let found = columns.iter().position(|it| path::same(&it.heading, name.trim()));
+        let at = found.ok_or_else(|| {
+            let near = path::nearest(name.trim(), columns.iter().map(|it| it.heading.as_str()));
+            format!("`{}` is not among the variables of the trace{near}", name.trim())
+        })?;
+        let is_number = matches!(columns[at].place.ty, Type::Elementary(it) if it.repr() != Repr::Bool);
+        match (is_number, taken.insert(at)) {
+            (false, _) => Err(format!("`{}` is not a number", columns[at].heading)),
+            (true, false) => Err(format!("`{}` is named twice", columns[at].heading)),
+            (true, true) => Ok(at),
+        }
+    };
+    wanted
+        .iter()
+        .map(|names| match split(names) {
+            names if (2..=MOST_OVERLAID).contains(&names.len()) => names.into_iter().map(&mut place).collect(),
+            _ => Err(format!("`{names}` is not two or three names, separated by commas")),
+        })
+        .collect()
 }
 
 /// The list of what TwinCAT tells of tasks, which is shown where it is asked for.

@@ -1,6 +1,6 @@
 //! A run: scan after scan, with what goes in and what comes out.
 
-use crate::column::columns;
+use crate::column::{columns, overlays};
 use crate::json::quote;
 use crate::map::Map;
 use crate::messages::Messages;
@@ -64,8 +64,10 @@ pub struct Options {
     /// The first and the last scan of the trace or table.
     pub from: Option<Moment>,
     pub to: Option<Moment>,
-    /// Variables to trace, apart by commas.
+    /// Variables to trace, separated by commas.
     pub vars: Option<String>,
+    /// Numbers that a picture shows in one lane, each time two or three names separated by commas.
+    pub overlay: Vec<String>,
     /// A file that keeps retained variables from run to run.
     pub retain: Option<PathBuf>,
     /// In real time, how soon a change of retained variables is on disk, in nanoseconds; 0 is after every
@@ -181,7 +183,12 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         false => Vec::new(),
     };
     let schedule = Schedule::new(map, &running, options.cycle);
-    let subject = Subject { map, columns, title: title(map, &running), cycle: schedule.shortest_period() };
+    let overlays = match options.overlay.is_empty() || options.trace.as_deref().is_some_and(trace::is_picture) {
+        true => overlays(&columns, &options.overlay),
+        false => Err("it is for a picture: write --trace OUT.svg".to_owned()),
+    };
+    let overlays = overlays.map_err(|it| Error::Usage(format!("--overlay: {it}")))?;
+    let subject = Subject { map, columns, overlays, title: title(map, &running), cycle: schedule.shortest_period() };
     let mut runner = Runner {
         machine,
         map,

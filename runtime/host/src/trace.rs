@@ -35,6 +35,8 @@ pub(crate) struct Row<'a> {
 pub(crate) struct Subject<'a> {
     pub map: &'a Map,
     pub columns: Vec<Column>,
+    /// The columns of numbers that a picture shows in one lane.
+    pub overlays: Vec<Vec<usize>>,
     /// Names the run to people.
     pub title: String,
     /// Time between scans.
@@ -86,6 +88,11 @@ impl Form {
 /// Whether a trace can have this name.
 pub(crate) fn check_name(path: &Path) -> Result<(), Error> {
     Form::of(path).map(|_| ())
+}
+
+/// Whether it is drawn in lanes.
+pub(crate) fn is_picture(path: &Path) -> bool {
+    Form::of(path).is_ok_and(|it| it == Form::Diagram)
 }
 
 /// An open trace file.

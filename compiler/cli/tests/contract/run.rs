@@ -122,6 +122,18 @@ fn the_clock_moves_by_the_cycle() {
 }
 
 #[test]
+fn numbers_share_a_lane_of_a_picture() {
+    let text = "PROGRAM P VAR a, b : INT; END_VAR a := a + 1; b := a / 2; END_PROGRAM";
+    let folder = Folder::with("overlay", &[("p.st", text)]);
+    for backend in ["native", "rust", "interpret"] {
+        folder.staunch(&format!("run p.st --scans 5 --backend {backend} --trace o.svg --overlay a,b")).out(0);
+        has(&folder.read("o.svg"), &[">b</text>", "class=\"number second\""]);
+    }
+    let error = folder.staunch("run p.st --scans 5 --trace o.csv --overlay a,b").err(2);
+    has(&error, &["--overlay: it is for a picture: write --trace OUT.svg"]);
+}
+
+#[test]
 fn traces_are_waves_and_diagrams_too() {
     let folder = Folder::with("waves", &[("main.st", COUNTER)]);
     folder.staunch("run main.st --scans 3 --trace out.vcd").out(0);

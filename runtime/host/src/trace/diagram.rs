@@ -1,7 +1,7 @@
 //! A trace as a timing diagram: a lane a variable, as an SVG picture.
 
 use super::axis::ticks;
-use super::timeline::{Lane, Piece, Timeline};
+use super::timeline::{Lane, Piece, Sample, Timeline};
 use super::{Row, Sink, Subject};
 use crate::column::Column;
 use crate::map::Type;
@@ -22,6 +22,7 @@ const STYLE: &str = "text{font:12px ui-monospace,Menlo,Consolas,monospace;fill:#
 .end{fill:#6e7781;text-anchor:end;font-size:10px}.same{fill:#6e7781}\
 .value{fill:#0550ae;font-size:11px}.grid{stroke:#eaeef2}.base{stroke:#d0d7de}\
 .bool{fill:#2da44e33;stroke:#1a7f37;stroke-width:1.5}.number{fill:none;stroke:#0969da;stroke-width:1.5}\
+.second{stroke:#bf3989}.third{stroke:#8250df}text.second{stroke:none;fill:#bf3989}text.third{stroke:none;fill:#8250df}\
 .text{fill:#fff8c5;stroke:#bf8700}.pulses{fill:#2da44e}.swing{fill:#0969da99}.turmoil{fill:#bf870066}";
 
 /// Draws at the end: only then the scale is known.
@@ -82,6 +83,8 @@ struct Strip<'a> {
     svg: &'a mut String,
     scale: &'a Scale,
     pieces: &'a [Piece],
+    /// What its classes have besides.
+    colour: &'static str,
     y: f64,
     height: f64,
 }
@@ -93,10 +96,11 @@ impl Diagram {
 
     fn picture(&self, subject: &Subject<'_>) -> String {
         let all = || subject.columns.iter().zip(&self.timeline.lanes);
-        let shown: Vec<(&Column, &Lane)> = all().filter(|(_, lane)| !lane.is_constant()).collect();
+        let shown = self.tracks(subject);
         let scale = self.scale(&shown);
-        let unchanged = unchanged(all().filter(|(_, lane)| lane.is_constant()), &scale);
-        let bottom = TOP + shown.iter().map(|(column, _)| height(column) + GAP).sum::<f64>();
+        let is_shown = |column: &Column| shown.iter().flatten().any(|it| std::ptr::eq(it.0, column));
+        let unchanged = unchanged(all().filter(|(column, _)| !is_shown(column)), &scale);
+        let bottom = TOP + shown.iter().map(|track| height(track) + GAP).sum::<f64>();
         let (width, height) = (scale.right() + 24.0, bottom + AXIS + unchanged.len() as f64 * 16.0);
         let mut svg = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
@@ -106,9 +110,9 @@ impl Diagram {
         );
         axis(&mut svg, &scale, bottom);
         let mut y = TOP;
-        for (column, lane) in shown {
-            draw(&mut svg, &scale, y, column, lane);
-            y += self::height(column) + GAP;
+        for track in &shown {
+            draw(&mut svg, &scale, y, track);
+            y += self::height(track) + GAP;
         }
         for (line, number) in unchanged.iter().zip(1_u8..) {
             let y = bottom + AXIS - 6.0 + f64::from(number) * 16.0;
@@ -118,10 +122,26 @@ impl Diagram {
         svg
     }
 
-    fn scale(&self, shown: &[(&Column, &Lane)]) -> Scale {
-        let names = shown.iter().map(|(column, _)| column.heading.chars().count()).max().unwrap_or(0);
-        let ends = shown.iter().filter(|(column, _)| kind(column.place.ty) == Kind::Number);
-        let ends = ends.filter_map(|(_, lane)| lane.range()).map(|(a, b)| a.text.len().max(b.text.len())).max();
+    /// What changes, or is drawn with what does, in the order of the columns.
+    fn tracks<'a>(&'a self, subject: &'a Subject<'_>) -> Vec<Track<'a>> {
+        let lane = |at: usize| (&subject.columns[at], &self.timeline.lanes[at]);
+        let mut tracks: Vec<Track<'a>> = Vec::new();
+        for at in 0..subject.columns.len() {
+            match subject.overlays.iter().find(|it| it.contains(&at)) {
+                Some(overlay) if overlay.iter().min() == Some(&at) => {
+                    tracks.push(overlay.iter().map(|at| lane(*at)).collect());
+                }
+                Some(_) => {}
+                None => tracks.push(vec![lane(at)]),
+            }
+        }
+        tracks.retain(|track| track.iter().any(|(_, lane)| !lane.is_constant()));
+        tracks
+    }
+
+    fn scale(&self, shown: &[Track<'_>]) -> Scale {
+        let names = shown.iter().flatten().map(|(column, _)| column.heading.chars().count()).max().unwrap_or(0);
+        let ends = shown.iter().filter_map(|it| ends(it)).map(|(a, b)| a.text.len().max(b.text.len())).max();
         let names = names as f64 * CHARACTER + 16.0;
         Scale {
             names,
@@ -133,11 +153,34 @@ impl Diagram {
     }
 }
 
-fn height(column: &Column) -> f64 {
-    match kind(column.place.ty) {
+/// The variables of one lane of the picture: one, or some numbers.
+type Track<'a> = Vec<(&'a Column, &'a Lane)>;
+
+/// How the first, second and third number of a lane are coloured.
+const COLOURS: [&str; 3] = ["", " second", " third"];
+
+fn kind_of(track: &Track<'_>) -> Kind {
+    track.first().map_or(Kind::Number, |(column, _)| kind(column.place.ty))
+}
+
+fn height(track: &Track<'_>) -> f64 {
+    match kind_of(track) {
         Kind::Number => 40.0,
         Kind::Bool | Kind::Text => 20.0,
     }
+}
+
+/// The least and the greatest of the numbers that a lane of the picture shows.
+fn ends(track: &Track<'_>) -> Option<(Sample, Sample)> {
+    if kind_of(track) != Kind::Number {
+        return None;
+    }
+    let ranges = track.iter().filter_map(|(_, lane)| lane.range());
+    ranges.reduce(|all, it| {
+        let low = if it.0.number < all.0.number { it.0 } else { all.0 };
+        let high = if it.1.number > all.1.number { it.1 } else { all.1 };
+        (low, high)
+    })
 }
 
 /// `Unchanged: a = 1, b = FALSE`, in lines as wide as the picture.
@@ -174,19 +217,22 @@ fn axis(svg: &mut String, scale: &Scale, bottom: f64) {
     }
 }
 
-fn draw(svg: &mut String, scale: &Scale, y: f64, column: &Column, lane: &Lane) {
-    let (kind, height) = (kind(column.place.ty), height(column));
-    let ends = if kind == Kind::Number { lane.range() } else { None };
-    let (left, base, middle) = (scale.left, y + height, y + height / 2.0 + 4.0);
-    let (name, x) = (escape(&column.heading), scale.names);
-    let _ = writeln!(svg, "<text class=\"name\" x=\"{x:.1}\" y=\"{middle:.1}\">{name}</text>");
+fn draw(svg: &mut String, scale: &Scale, y: f64, track: &Track<'_>) {
+    let (height, ends) = (height(track), ends(track));
+    let (left, base) = (scale.left, y + height);
     let _ = writeln!(svg, "<path class=\"base\" d=\"M{left:.1} {base:.1}H{:.1}\"/>", scale.right());
-    let pieces = lane.coarser(scale.start, scale.point());
-    let mut strip = Strip { svg, scale, pieces: &pieces, y, height };
-    match kind {
-        Kind::Bool => strip.bool(),
-        Kind::Number => strip.number(ends.as_ref().map_or((0.0, 0.0), |(low, high)| (low.number, high.number))),
-        Kind::Text => strip.text(),
+    let mut middle = y + height / 2.0 + 4.0 - (track.len() as f64 - 1.0) * 6.5;
+    for ((column, lane), colour) in track.iter().zip(COLOURS) {
+        let (name, x) = (escape(&column.heading), scale.names);
+        let _ = writeln!(svg, "<text class=\"name{colour}\" x=\"{x:.1}\" y=\"{middle:.1}\">{name}</text>");
+        middle += 13.0;
+        let pieces = lane.coarser(scale.start, scale.point());
+        let mut strip = Strip { svg, scale, pieces: &pieces, colour, y, height };
+        match kind(column.place.ty) {
+            Kind::Bool => strip.bool(),
+            Kind::Number => strip.number(ends.as_ref().map_or((0.0, 0.0), |(low, high)| (low.number, high.number))),
+            Kind::Text => strip.text(),
+        }
     }
     for (text, y) in ends.iter().flat_map(|(low, high)| [(&high.text, y + 8.0), (&low.text, base)]) {
         let _ = writeln!(svg, "<text class=\"end\" x=\"{:.1}\" y=\"{y:.1}\">{}</text>", left - 6.0, escape(text));
@@ -252,7 +298,7 @@ impl Strip<'_> {
                 bands.push((from, settled, level(piece.high.number), level(piece.low.number)));
             }
         }
-        let _ = writeln!(self.svg, "<path class=\"number\" d=\"{path}\"/>");
+        let _ = writeln!(self.svg, "<path class=\"number{}\" d=\"{path}\"/>", self.colour);
         bands.into_iter().for_each(|(from, to, top, bottom)| self.band("swing", from, to, top, bottom));
         // Above its line where there is room, else below.
         self.labels(false, |piece| match level(piece.last.number) - 3.0 {
@@ -282,7 +328,7 @@ impl Strip<'_> {
 
     /// The values, where there is room for them.
     fn labels(&mut self, is_text: bool, y: impl Fn(&Piece) -> f64) {
-        let mut labels = String::new();
+        let (mut labels, colour) = (String::new(), self.colour);
         for (_, settled, to, piece) in self.spans() {
             let room = ((to - settled - 6.0) / (CHARACTER * 0.92)) as usize;
             let shown = visible(&piece.last.text);
@@ -290,7 +336,11 @@ impl Strip<'_> {
             let shown = if is_text { shortened(shown, room) } else { shown };
             if !shown.is_empty() && shown.chars().count() <= room {
                 let (x, y) = (settled + 5.0, y(piece));
-                let _ = writeln!(labels, "<text class=\"value\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>", escape(&shown));
+                let _ = writeln!(
+                    labels,
+                    "<text class=\"value{colour}\" x=\"{x:.1}\" y=\"{y:.1}\">{}</text>",
+                    escape(&shown)
+                );
             }
         }
         self.svg.push_str(&labels);
@@ -346,12 +396,18 @@ impl Sink for Diagram {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::column::columns;
+    use crate::column::{columns, overlays};
     use crate::fixture::map;
     use crate::trace::tests::{texts_written, values_written, written};
 
     fn subject<'a>(map: &'a crate::Map, vars: &str, title: &str) -> Subject<'a> {
-        Subject { map, columns: columns(map, &[0], Some(vars)).unwrap(), title: title.to_owned(), cycle: 10_000_000 }
+        Subject {
+            map,
+            columns: columns(map, &[0], Some(vars)).unwrap(),
+            overlays: Vec::new(),
+            title: title.to_owned(),
+            cycle: 10_000_000,
+        }
     }
 
     #[test]
@@ -400,6 +456,27 @@ mod tests {
             |out| Box::new(Diagram::new(out, &subject)),
         );
         assert!(svg.len() < 500_000, "{}", svg.len());
+    }
+
+    /// One scale for both, which is from the least to the greatest of them.
+    #[test]
+    fn numbers_share_a_lane() {
+        let map = map();
+        let mut subject = subject(&map, "up,c.CV,level", "Shared");
+        subject.overlays = overlays(&subject.columns, &["level,c.CV".to_owned()]).unwrap();
+        let svg =
+            values_written(&subject, 20, |scan| (true, (scan % 7) as i16), |out| Box::new(Diagram::new(out, &subject)));
+        assert_eq!(svg.matches("class=\"end\"").count(), 2, "{svg}");
+        assert!(svg.contains("class=\"name\"") && svg.contains("class=\"name second\""), "{svg}");
+        assert!(svg.contains("class=\"number second\""), "{svg}");
+        for (wanted, said) in [
+            ("level", "`level` is not two or three names, separated by commas"),
+            ("level,up", "`up` is not a number"),
+            ("level,level", "`level` is named twice"),
+            ("level,lever", "`lever` is not among the variables of the trace; did you mean `level`?"),
+        ] {
+            assert_eq!(overlays(&subject.columns, &[wanted.to_owned()]).unwrap_err(), said);
+        }
     }
 
     /// A number is whole or not shown: its first digits are another one.

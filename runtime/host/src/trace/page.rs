@@ -106,7 +106,8 @@ mod tests {
     fn data_are_the_changes_with_their_texts() {
         let map = map();
         let columns = columns(&map, &[0], Some("up,c.CV,name,speed")).unwrap();
-        let subject = Subject { map: &map, columns, title: "</script>".to_owned(), cycle: 10_000_000 };
+        let subject =
+            Subject { map: &map, columns, overlays: Vec::new(), title: "</script>".to_owned(), cycle: 10_000_000 };
         let page = written(&subject, |out| Box::new(Page::new(out, &subject)));
         assert_eq!(
             data(&page),
@@ -124,6 +125,7 @@ mod tests {
         let subject = Subject {
             map: &map,
             columns: columns(&map, &[0], Some("up,level")).unwrap(),
+            overlays: Vec::new(),
             title: String::new(),
             cycle: 10_000_000,
         };

@@ -48,7 +48,7 @@ mod tests {
     fn a_row_a_scan() {
         let map = map();
         let columns = columns(&map, &[0], Some("up,c.CV,name,m[1,2]")).unwrap();
-        let subject = Subject { map: &map, columns, title: String::new(), cycle: 10_000_000 };
+        let subject = Subject { map: &map, columns, overlays: Vec::new(), title: String::new(), cycle: 10_000_000 };
         let text = written(&subject, |out| Box::new(Rows::new(out, &subject).unwrap()));
         assert_eq!(
             text,

@@ -140,8 +140,13 @@ mod tests {
     use crate::map::Map;
 
     fn table(map: &Map, vars: Option<&str>, scans: u64, width: usize) -> String {
-        let subject =
-            Subject { map, columns: columns(map, &[0], vars).unwrap(), title: String::new(), cycle: 10_000_000 };
+        let subject = Subject {
+            map,
+            columns: columns(map, &[0], vars).unwrap(),
+            overlays: Vec::new(),
+            title: String::new(),
+            cycle: 10_000_000,
+        };
         let (mut table, mut state) = (Table::new(width), vec![0; 128]);
         for scan in 1..=scans {
             state[8] = u8::from(scan % 2 == 0);

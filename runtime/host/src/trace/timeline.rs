@@ -219,6 +219,7 @@ mod tests {
         let subject = Subject {
             map: &map,
             columns: columns(&map, &[0], Some("c.CV")).unwrap(),
+            overlays: Vec::new(),
             title: String::new(),
             cycle: 10_000_000,
         };
@@ -272,7 +273,8 @@ mod tests {
     #[test]
     fn scans_are_counted_where_their_pace_changes() {
         let map = map();
-        let subject = Subject { map: &map, columns: Vec::new(), title: String::new(), cycle: 10_000_000 };
+        let subject =
+            Subject { map: &map, columns: Vec::new(), overlays: Vec::new(), title: String::new(), cycle: 10_000_000 };
         let mut timeline = Timeline::new(&subject, 10);
         for (scan, time) in [(1, 0), (2, 10), (3, 20), (4, 25), (5, 30), (6, 35)] {
             timeline.row(&subject, Row { scan, time, state: &[] });

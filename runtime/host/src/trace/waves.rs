@@ -189,7 +189,8 @@ mod tests {
     fn only_changes_are_written() {
         let map = map();
         let columns = columns(&map, &[0], Some("up,c.CV,name,speed,m[1,2]")).unwrap();
-        let subject = Subject { map: &map, columns, title: "Garage".to_owned(), cycle: 10_000_000 };
+        let subject =
+            Subject { map: &map, columns, overlays: Vec::new(), title: "Garage".to_owned(), cycle: 10_000_000 };
         let text = written(&subject, |out| Box::new(Waves::new(out, &subject).unwrap()));
         assert_eq!(
             text,
@@ -228,7 +229,8 @@ r0.5 $
     fn different_texts_stay_different() {
         let map = map();
         let columns = columns(&map, &[0], Some("name")).unwrap();
-        let subject = Subject { map: &map, columns, title: "Garage".to_owned(), cycle: 10_000_000 };
+        let subject =
+            Subject { map: &map, columns, overlays: Vec::new(), title: "Garage".to_owned(), cycle: 10_000_000 };
         let texts = ["a b", "a\nb", "a_b", "\0", "\\000", "ä", "\u{a0}"];
         let vcd = texts_written(&subject, &texts, |out| Box::new(Waves::new(out, &subject).unwrap()));
         let changes: Vec<_> = vcd.lines().filter_map(|it| it.strip_prefix('s')).collect();
