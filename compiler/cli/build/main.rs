@@ -37,6 +37,7 @@ fn pack() -> Result<(), String> {
     }
     write(&out.join("runtime-sources"), &archive)?;
     println!("cargo::rustc-env=STAUNCH_TARGET={}", variable("TARGET")?);
+    println!("cargo::rustc-env=STAUNCH_VERSION={}", version()?);
     let built = out.join("runtime");
     fs::create_dir_all(&built).map_err(|it| it.to_string())?;
     let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(variable("TARGET")?) };
@@ -45,6 +46,26 @@ fn pack() -> Result<(), String> {
         strip(&rustc.static_library(library, &built)?);
     }
     Ok(())
+}
+
+/// The version, with the commit where it is known. A development build names none: it would be compiled again with each.
+fn version() -> Result<String, String> {
+    let version = variable("CARGO_PKG_VERSION")?;
+    if variable("PROFILE")? != "release" {
+        return Ok(format!("{version} (development build)"));
+    }
+    if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
+        println!("cargo::rerun-if-changed={log}");
+    }
+    let commit = git(&["log", "-1", "--format=%h %cs"]);
+    Ok(commit.map_or(version.clone(), |it| format!("{version} ({it})")))
+}
+
+/// What git prints of the sources, if they are of a checkout.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?.trim().to_owned();
+    (output.status.success() && !text.is_empty()).then_some(text)
 }
 
 fn variable(name: &str) -> Result<String, String> {

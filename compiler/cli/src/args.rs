@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Ahead-of-time compiler for IEC 61131-3 Structured Text.
 #[derive(Debug, Parser)]
-#[command(name = "staunch", version, max_term_width = 100, arg_required_else_help = true)]
+#[command(name = "staunch", version = env!("STAUNCH_VERSION"), max_term_width = 100, arg_required_else_help = true)]
 #[command(after_help = "A FILE may be a folder (every .st and .iecst below it) or - (standard input).\n\
     Exit codes: 0 done; 1 the program was rejected; 2 wrong usage; 3 the program faulted while it ran;\n\
     4 compare found no difference and rules none out; 101 an internal error.")]
@@ -43,6 +43,8 @@ pub enum Command {
     Man(Man),
     /// Make a project that builds and runs
     New(New),
+    /// Show which targets this machine can build for, and what to install for the others
+    Doctor(Doctor),
 }
 
 /// What every verb takes.
@@ -428,6 +430,13 @@ pub struct Man {
 pub struct New {
     /// The folder to make
     pub dir: PathBuf,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Doctor {
+    /// Only this target, as aarch64 or aarch64-unknown-linux-gnu; may be repeated
+    #[arg(long, value_name = "TRIPLE")]
+    pub target: Vec<String>,
 }
 
 /// A dialect, by the name that it was asked for by.

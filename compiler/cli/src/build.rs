@@ -85,7 +85,7 @@ fn rust(program: &Program, emit: Emit, target: Option<&str>, out: &Path) -> Resu
 }
 
 /// rustc's name of a target that is given by its architecture alone.
-fn full_name(target: &str) -> String {
+pub fn full_name(target: &str) -> String {
     match target {
         "aarch64" => "aarch64-unknown-linux-gnu".to_owned(),
         "riscv64" | "riscv64gc" => "riscv64gc-unknown-linux-gnu".to_owned(),

@@ -9,8 +9,13 @@ pub fn no_system(target: &str) -> String {
     format!("{target} has no operating system to run an executable on; write --emit lib and link it into your firmware")
 }
 
+/// The target of this machine.
+pub fn host() -> &'static str {
+    env!("STAUNCH_TARGET")
+}
+
 pub fn is_host(target: &str) -> bool {
-    target == env!("STAUNCH_TARGET")
+    target == host()
 }
 
 /// The C compiler as a linker. For the host `$CC` or a usual name; for another target `$CC_` and
@@ -75,5 +80,5 @@ fn exists(program: &str) -> bool {
 
 /// Shows that a rustc can be asked for, in messages.
 pub fn describe(rustc: &Rustc) -> String {
-    rustc.target.clone().unwrap_or_else(|| env!("STAUNCH_TARGET").to_owned())
+    rustc.target.clone().unwrap_or_else(|| host().to_owned())
 }

@@ -23,6 +23,7 @@ mod machine;
 mod run;
 mod test;
 
+mod doctor;
 mod explain;
 mod manual;
 mod new;
@@ -109,6 +110,7 @@ fn dispatch(cli: Cli) -> u8 {
         Command::Explain(it) => explain::explain(it),
         Command::Completions(it) => manual::completions(it),
         Command::Man(it) => manual::pages(it),
+        Command::Doctor(it) => doctor::doctor(it),
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => {

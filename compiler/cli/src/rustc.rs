@@ -44,7 +44,8 @@ pub fn find(target: Option<&str>) -> Result<Rustc, String> {
 }
 
 fn version(rustc: &Rustc) -> Result<Vec<u8>, String> {
-    let missing = "the Rust back end needs rustc: install it from https://rustup.rs, or use --backend native";
+    let missing =
+        "rustc was not found: install it from https://rustup.rs; only --backend native for this machine needs none";
     let output = Command::new(&rustc.program).arg("-vV").output().map_err(|_| missing.to_owned())?;
     if output.status.success() { Ok(output.stdout) } else { Err(missing.to_owned()) }
 }

@@ -275,3 +275,23 @@ fn a_new_project_builds_and_runs() {
     has(&inside.staunch("test").out(0), &["ok      ten parts fill a box", "1 passed, 0 failed"]);
     folder.staunch("new plant").err(2);
 }
+
+/// What is missing is reported with what to type. Where nothing is on the path, native code of this machine can still be
+/// made, but not linked.
+#[test]
+fn the_doctor_says_what_to_install() {
+    let folder = Folder::new("doctor");
+    let text = folder.staunch("doctor").out(0);
+    has(&text, &[", this machine\n       ok  an object of native code\n", "thumbv7em-none-eabihf\n"]);
+    let bare = folder.command("doctor").env("PATH", "").env_remove("RUSTC").env_remove("CC").output().unwrap();
+    let text = String::from_utf8_lossy(&bare.stdout);
+    assert_eq!(bare.status.code(), Some(2), "{text}");
+    let missing = ["ok  an object", "missing  an executable of native code: no linker was found", "https://rustup.rs"];
+    has(&text, &missing);
+    has(&folder.staunch("doctor --target no-such-machine").out(2), &["rustc knows no target `no-such-machine`"]);
+}
+
+#[test]
+fn the_version_is_named() {
+    has(&Folder::new("version").staunch("--version").out(0), &[concat!("staunch ", env!("CARGO_PKG_VERSION"))]);
+}
