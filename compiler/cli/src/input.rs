@@ -121,3 +121,10 @@ pub fn shown(path: &Path) -> String {
     let parts = below.unwrap_or(path).components().filter(|it| *it != std::path::Component::CurDir);
     parts.collect::<PathBuf>().display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
 }
+
+/// The text of a file that is no source; a pipe is waited for.
+pub fn text(path: &Path) -> Result<String, String> {
+    let mut text = String::new();
+    let read = staunch_host::open_to_read(path).and_then(|mut it| it.read_to_string(&mut text));
+    read.map(|_| text).map_err(|it| format!("cannot read {}: {it}", path.display()))
+}

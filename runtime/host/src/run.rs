@@ -96,7 +96,10 @@ impl Options {
 impl Options {
     /// No file is read and written, or written twice.
     fn keep_apart(&self) -> Result<(), String> {
-        let inputs: Vec<Role<'_>> = self.stimulus.iter().map(|it| ("--stimulus", it.as_path())).collect();
+        // What runs is not a file to write either.
+        let own = std::env::current_exe().ok();
+        let own = own.iter().map(|it| ("the executable", it.as_path()));
+        let inputs: Vec<Role<'_>> = self.stimulus.iter().map(|it| ("--stimulus", it.as_path())).chain(own).collect();
         let outputs = [("--retain", &self.retain), ("--trace", &self.trace)];
         let outputs: Vec<Role<'_>> =
             outputs.iter().filter_map(|(what, path)| Some((*what, path.as_deref()?))).collect();

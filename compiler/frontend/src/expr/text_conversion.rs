@@ -51,7 +51,7 @@ impl<'s> Checker<'_, 's> {
         operands.extend(self.kind_of_time(op, ty, name.span));
         let number = operands.first().cloned()?;
         let text = self.text_function_of(op, Type::string(op.longest()?), operands, name.span)?;
-        let has_sign = ty.is_integer() && self.decl.dialect(name.span).rules().writes_plus();
+        let has_sign = ty.is_integer() && ty.repr().is_signed() && self.decl.dialect(name.span).rules().writes_plus();
         if has_sign { self.with_plus(text, number, name.span) } else { Some(text) }
     }
 

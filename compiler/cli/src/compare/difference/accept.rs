@@ -27,7 +27,7 @@ pub struct Line {
 
 impl Accepted {
     pub fn read(path: &Path) -> Result<Self, String> {
-        let text = std::fs::read_to_string(path).map_err(|it| format!("cannot read {}: {it}", path.display()))?;
+        let text = crate::input::text(path)?;
         let shown = path.display().to_string();
         Self::parse(&text, &shown).map_err(|(line, text)| format!("{shown}:{line}: {text}"))
     }

@@ -9,6 +9,7 @@ mod tokens;
 use super::choice::{Choice, Covered};
 use crate::compare::pair::Pair;
 use crate::compare::program::facts::Numbers;
+use crate::input::text;
 use crate::machine;
 use condition::{Condition, is_within, order};
 use parser::{Named, Parser};
@@ -45,10 +46,6 @@ impl Mentioned {
     pub fn has(&self, path: &str) -> bool {
         self.0.contains(&path.to_lowercase())
     }
-}
-
-fn text(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|it| format!("cannot read {}: {it}", path.display()))
 }
 
 impl Assumptions {

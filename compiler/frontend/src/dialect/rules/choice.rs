@@ -231,7 +231,7 @@ impl Choice for IntegerText {
     fn words(self) -> &'static str {
         match self {
             Self::Digits => "`207`",
-            Self::SignAndDigits => "`+207`",
+            Self::SignAndDigits => "`+207`; of an unsigned type `207`",
         }
     }
 }

@@ -170,7 +170,7 @@ pub(super) const SIEMENS: Rules = Rules {
     division_by_zero: follows(ByZero::GivesZero, SIEMENS_BY_ZERO),
     modulo_by_zero: follows(ByZero::GivesZero, SIEMENS_BY_ZERO),
     shr_of_signed: follows(ShrOfSigned::Sign, "S7-1200 manual, \"SHR\""),
-    integer_text: follows(IntegerText::SignAndDigits, "S7-1200 manual, 11/2011, p. 247, table 8-33"),
+    integer_text: follows(IntegerText::SignAndDigits, "S7-1200 manual, 11/2011, pp. 247 and 248, tables 8-33 and 8-34"),
     real_and_bits: follows(RealAndBits::Bits, "S7-1200 manual, \"CONV\""),
     date_as_number: follows(DateAsNumber::DaysSince1990, SIEMENS_DATES),
     real_of_text: follows(RealOfText::FixedPoint, "S7-1200 manual, 11/2011, p. 247, table 8-33"),
