@@ -33,11 +33,23 @@ pub enum Part {
     Subrange,
     /// A division of integers, or MOD, by 0 that is reached. No program notes it: most divide by what is not 0.
     DivisionByZero,
+    /// A comparison of durations with one that is not a whole number of binary fractions of a second, or of two variables.
+    ComparedTimes,
+    /// A number with a fraction that a REAL does not hold exactly, beside a REAL.
+    FractionBesideReal,
 }
 
 impl Part {
-    pub const ALL: [Self; 6] =
-        [Self::Enable, Self::Temp, Self::LimitOfType, Self::MovingPreset, Self::Subrange, Self::DivisionByZero];
+    pub const ALL: [Self; 8] = [
+        Self::Enable,
+        Self::Temp,
+        Self::LimitOfType,
+        Self::MovingPreset,
+        Self::Subrange,
+        Self::DivisionByZero,
+        Self::ComparedTimes,
+        Self::FractionBesideReal,
+    ];
 
     /// In words, for tables and messages.
     pub const fn words(self) -> &'static str {
@@ -48,6 +60,8 @@ impl Part {
             Self::MovingPreset => "a PT that moves",
             Self::Subrange => "a value outside of a subrange",
             Self::DivisionByZero => "integer division by 0",
+            Self::ComparedTimes => "a comparison of TIMEs",
+            Self::FractionBesideReal => "a number with a fraction beside a REAL",
         }
     }
 }

@@ -77,3 +77,61 @@ fn what_the_project_decides_is_the_verdict() {
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("With `ctu-stop-at-pv = true`, the two differ after 7 scans."), "{text}");
 }
+
+/// MATIEC's `T#1300ms` is 1299999999 ns on x86-64, and `T#1.3s` another number; whole seconds and halves are exact everywhere.
+#[test]
+fn times_that_openplc_may_not_hold_are_not_called_equal() {
+    let source = |condition: &str| {
+        format!(
+            "PROGRAM p
+VAR_INPUT a : BOOL; END_VAR
+VAR_OUTPUT k : BOOL; END_VAR
+VAR x : TIME := T#1300ms; d : TON; END_VAR
+d(IN := a, PT := T#2s);
+k := {condition};
+END_PROGRAM
+"
+        )
+    };
+    for (name, condition, code) in [
+        ("times_equal", "x = T#1.3s", 4),
+        ("times_of_a_timer", "d.ET > T#130ms", 4),
+        ("times_of_two", "d.ET > x", 4),
+        ("times_exact", "d.ET > T#500ms", 0),
+    ] {
+        for to in ["openplc", "iec"] {
+            let from = if to == "iec" { "openplc" } else { "iec" };
+            let (found, text) = OWN.compare(name, &source(condition), &["--from", from, "--to", to, "--vars", "k"]);
+            assert_eq!(found, Some(code), "{text}");
+            assert_eq!(
+                text.contains("a comparison of TIMEs of OPENPLC, which is not followed here"),
+                code == 4,
+                "{text}"
+            );
+        }
+    }
+}
+
+/// What documents leave open is said with a verdict that nothing differs.
+#[test]
+fn values_that_a_vendor_leaves_open_are_named() {
+    let source = "PROGRAM p
+VAR_INPUT a : BOOL; END_VAR
+VAR_OUTPUT k : BOOL; END_VAR
+VAR n : INT; r : REAL := 0.1; END_VAR
+n := (n + 1) MOD 3;
+k := a AND n MOD 2 = 1 AND r > 0.1;
+END_PROGRAM
+";
+    let no_run = OWN.written("no_run.txt", "no run\n");
+    let arguments = ["--from", "codesys", "--to", "iec", "--assume", &no_run];
+    let (code, text) = OWN.compare("left_open", source, &arguments);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("The documents of CODESYS leave open `MOD` of a negative number (line 5)"), "{text}");
+    assert!(text.contains("leave open a number with a fraction beside a REAL (line 6): here a REAL"), "{text}");
+    let (_, json) = OWN.compare("left_open", source, &[&arguments[..], &["--message-format", "json"]].concat());
+    assert!(json.contains("\"open\":[\"The documents of CODESYS leave open `MOD`"), "{json}");
+    let exact = source.replace("0.1", "0.5").replace("MOD", "*");
+    let (_, text) = OWN.compare("nothing_open", &exact, &arguments);
+    assert!(!text.contains("leave open"), "{text}");
+}

@@ -79,6 +79,7 @@ impl<'s> Checker<'_, 's> {
     /// The operation on two sides that have been checked.
     pub(crate) fn combine(&mut self, mut sides: Sides) -> Option<Operand> {
         self.note_operator(sides.op.text(), &[&sides.a, &sides.b], sides.op_span);
+        self.note_fraction(&sides.a, &sides.b, sides.op_span);
         if sides.a.is_reference() || sides.b.is_reference() {
             return self.reference_operation(sides);
         }

@@ -2,8 +2,9 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
+use super::real::Real;
 use crate::Span;
-use staunch_ir::{Elementary, Expr, ExprKind, Op, Type, Use};
+use staunch_ir::{Elementary, Expr, ExprKind, Op, Part, Type, Use, Value};
 use staunch_runtime::Class;
 
 impl Checker<'_, '_> {
@@ -31,6 +32,7 @@ impl Checker<'_, '_> {
     pub(super) fn note_types(&mut self, made: &Expr) {
         let elementary = |it: &Expr| it.ty.elementary();
         let types: Vec<Elementary> = match &made.kind {
+            ExprKind::Apply(op, operands) if compares(*op) => return self.note_compared_times(operands, made),
             ExprKind::Apply(op, operands) if !chooses(*op) => {
                 operands.iter().chain([made]).filter_map(elementary).collect()
             }
@@ -47,6 +49,39 @@ impl Checker<'_, '_> {
             | ExprKind::Load(_) => return,
         };
         types.into_iter().for_each(|it| self.decl.program.uses.note(Use::Type(it), made.at));
+    }
+}
+
+/// What all durations that a double holds are multiples of, in nanoseconds: 1/512 s.
+const BINARY_FRACTION: i128 = 1_953_125;
+
+impl Checker<'_, '_> {
+    /// Durations that are compared with a literal that a binary fraction of a second does not hold, or with each other.
+    fn note_compared_times(&mut self, operands: &[Expr], made: &Expr) {
+        if !operands.iter().any(|it| it.ty.elementary().is_some_and(Elementary::is_duration)) {
+            return;
+        }
+        let is_exact =
+            |it: &Expr| it.as_const().and_then(Value::as_integer).is_some_and(|it| it % BINARY_FRACTION == 0);
+        if !operands.iter().any(is_exact) {
+            self.decl.program.uses.note(Use::Part(Part::ComparedTimes), made.at);
+        }
+    }
+
+    /// A number that is another one as a REAL than as an LREAL, next to a REAL.
+    pub(super) fn note_fraction(&mut self, a: &Operand, b: &Operand, span: Span) {
+        let is_real = |it: &Operand| it.ty() == Some(Type::Elementary(Elementary::Real));
+        if is_real(a) && is_inexact(b) || is_real(b) && is_inexact(a) {
+            self.note_use(Use::Part(Part::FractionBesideReal), span);
+        }
+    }
+}
+
+fn is_inexact(operand: &Operand) -> bool {
+    match operand {
+        Operand::Real { number: Real::Literal(text) } => text.parse::<f64>().is_ok_and(|it| f64::from(it as f32) != it),
+        Operand::Real { .. } => true,
+        Operand::Typed(_) | Operand::Promoted(..) | Operand::Integer(_) => false,
     }
 }
 
@@ -67,6 +102,10 @@ fn class(ty: Type) -> Option<Class> {
     }
 }
 
+const fn compares(op: Op) -> bool {
+    matches!(op, Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne)
+}
+
 const fn chooses(op: Op) -> bool {
-    matches!(op, Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne | Op::Min | Op::Max)
+    matches!(op, Op::Min | Op::Max)
 }

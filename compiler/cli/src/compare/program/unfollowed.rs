@@ -2,7 +2,7 @@
 //! followed.
 
 use staunch_frontend::Dialect;
-use staunch_frontend::rules::{NOT_FOLLOWED, Use};
+use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Use};
 use staunch_ir::{Field, Program, Section};
 
 /// A sentence for each rule that the program's source uses, or whose type it is given from outside.
@@ -16,6 +16,20 @@ pub fn find(program: &Program, dialect: Dialect) -> Vec<String> {
             row.uses.words(),
             row.what,
             row.evidence
+        ))
+    });
+    found.collect()
+}
+
+/// A sentence for each value that the system's documents leave open, and that the program may come to.
+pub fn open(program: &Program, dialect: Dialect) -> Vec<String> {
+    let rows = EDGES.iter().filter(|it| it.dialect == dialect);
+    let found = rows.filter_map(|row| {
+        let line = row.uses.iter().filter_map(|it| used(program, *it)).min()?;
+        let (system, what) = (dialect.name().to_ascii_uppercase(), row.what);
+        Some(format!(
+            "The documents of {system} leave open {what} (line {line}): here {} ({}).",
+            row.here, row.documented
         ))
     });
     found.collect()

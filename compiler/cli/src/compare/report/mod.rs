@@ -162,6 +162,9 @@ impl Report<'_> {
             );
         }
         text += &judged.variants();
+        if !matches!(judged.verdict, Verdict::Differs { .. }) {
+            world.open.iter().for_each(|it| _ = writeln!(text, "{it}"));
+        }
         if self.args.stimulus.is_none() {
             text += &self.listed(findings, accepted);
             text += &self.not_accepted(findings, accepted);

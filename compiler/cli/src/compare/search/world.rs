@@ -32,6 +32,8 @@ pub struct World {
     pub computed: Vec<Candidate>,
     /// Rules of the two systems that the programs use and that are not followed.
     pub unfollowed: Vec<String>,
+    /// Values that the documents of the two systems leave open, and that the programs may come to.
+    pub open: Vec<String>,
     /// What is accepted, where the search goes on past it.
     pub tolerance: Option<Tolerance>,
 }
@@ -72,6 +74,7 @@ impl World {
             habits,
             computed,
             unfollowed: pair.sides.iter().flat_map(|it| unfollowed::find(&it.program, it.dialect)).collect(),
+            open: pair.sides.iter().flat_map(|it| unfollowed::open(&it.program, it.dialect)).collect(),
             tolerance: None,
         })
     }

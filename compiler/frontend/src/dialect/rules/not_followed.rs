@@ -37,6 +37,10 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     ),
     not_followed(Dialect::Codesys, Elementary::Tod, "32 bits of milliseconds: it has no parts of one", CODESYS_DATES),
     of_matiec(Use::Type(Elementary::Time), PARTS),
+    of_matiec(
+        Use::Part(Part::ComparedTimes),
+        "a literal may lack a nanosecond, which the machine decides: on x86-64 `T#130ms` is 129999999 ns, and `T#1300ms = T#1.3s` is FALSE",
+    ),
     of_matiec(Use::Type(Elementary::Dt), PARTS),
     of_matiec(Use::Type(Elementary::Tod), "it may be negative, or longer than a day: `TOD#00:00:00 - T#1s`"),
     of_matiec(Use::Type(Elementary::Date), "it may have a time of day: `DINT_TO_DATE(1)`"),
@@ -172,11 +176,23 @@ pub struct Edge {
     pub what: &'static str,
     pub here: &'static str,
     pub documented: &'static str,
+    /// What a program has that may come to it; nothing where too many programs would have it.
+    pub uses: &'static [Use],
 }
 
-const fn edge(dialect: Dialect, what: &'static str, here: &'static str, documented: &'static str) -> Edge {
-    Edge { dialect, what, here, documented }
+const fn edge(
+    dialect: Dialect,
+    what: &'static str,
+    here: &'static str,
+    documented: &'static str,
+    uses: &'static [Use],
+) -> Edge {
+    Edge { dialect, what, here, documented, uses }
 }
+
+/// Functions on texts by position.
+const BY_POSITION: &[Use] =
+    &[Use::Function("MID"), Use::Function("INSERT"), Use::Function("DELETE"), Use::Function("REPLACE")];
 
 /// Where a vendor leaves a value open, or where no page was found: what is done here is a choice.
 pub const EDGES: &[Edge] = &[
@@ -185,78 +201,103 @@ pub const EDGES: &[Edge] = &[
         "`MOD` of a negative number",
         "the dividend's sign, as processors divide",
         "CODESYS help, \"MOD\": \"a non-negative integer\", without an example; Beckhoff, \"MOD\": the integer remainder",
+        &[Use::Operator("MOD", Class::Signed)],
     ),
     edge(
         Dialect::Codesys,
         "`SHL`, `SHR` by the type's bits or more",
         "zeros come in, the sign in `SHR` of a signed one",
         "CODESYS help and Beckhoff, \"SHL\", \"SHR\": zeros, or `N MOD` the register's bits, as the target has it",
+        &[Use::Function("SHL"), Use::Function("SHR")],
     ),
     edge(
         Dialect::Codesys,
         "`TRUNC`, `TRUNC_INT` beyond the type",
         "the low bits",
         "CODESYS help, \"TRUNC\", \"TRUNC_INT\": undefined, depends on the platform",
+        &[Use::Function("TRUNC"), Use::Function("TRUNC_INT")],
     ),
     edge(
         Dialect::Codesys,
         "`MID`, `INSERT`, `DELETE`, `REPLACE` with a position or count out of range",
         "acts as the nearest one",
         "CODESYS, library Standard: nothing",
+        BY_POSITION,
     ),
     edge(
         Dialect::Codesys,
         "a number with a fraction beside a REAL",
         "a REAL",
         "CODESYS help and Beckhoff, \"Typed Literals\": always LREAL, so that `r = 0.1` is FALSE; SA0024: typed by its use",
+        &[Use::Part(Part::FractionBesideReal)],
     ),
     edge(
         Dialect::Logix,
         "an integer operation in an expression that has a REAL elsewhere: `d / 2 + 0.5`",
         "of integers",
         "1756-RM003N, p. 649: with a REAL among the operands, those of an instruction convert to REAL; of expressions of ST no page says it",
+        &[Use::Conversion(Class::Int, Class::Real)],
     ),
     edge(
         Dialect::Logix,
         "the quotient of an integer and 0",
         "the dividend",
         "1756-RM003N, pp. 277 and 281: only the minor fault",
+        &[],
     ),
     edge(
         Dialect::Logix,
         "`MID`, `INSERT`, `DELETE` with an invalid Start or Quantity",
         "acts as the nearest one",
         "Rockwell, \"String Delete (DELETE)\": a minor fault of type 4, code 56; the destination is on no page",
+        BY_POSITION,
     ),
     edge(
         Dialect::Logix,
         "an integer with more digits than the real beside it",
         "the nearest real, of two the even one",
         "1756-RM006K, p. 543: so; p. 546: the lower bits are truncated",
+        &[Use::Conversion(Class::Int, Class::Real)],
     ),
     edge(
         Dialect::Siemens,
         "a conversion to an integer type that does not hold the number",
         "of a real the nearest value, of an integer the low bits",
         "no page read says the value; ENO is FALSE",
+        &[Use::Conversion(Class::Real, Class::Int), Use::Conversion(Class::Int, Class::Int)],
     ),
     edge(
         Dialect::Siemens,
         "`/` and `MOD` by zero; `LIMIT` with MN above MX",
         "0; IN",
         "the S7-1200 manual's tables of ENO say it, but the pages could not be read again for this table",
+        &[Use::Function("LIMIT")],
     ),
     edge(
         Dialect::Siemens,
         "`BCD16_TO_INT` of four bits above 9, `INT_TO_BCD16` of more than three digits",
         "a fault",
         "S7-400 Instruction List, p. 82: only the range",
+        &[Use::Function("BCD16_TO_INT"), Use::Function("INT_TO_BCD16")],
     ),
     edge(
         Dialect::Siemens,
         "`TONR` in the call in which IN falls; IN still TRUE after R, or after `RESET_TIMER`",
         "the time up to that call counts; it times anew",
         "S7-1200 manual, 11/2011, table 7-19: nothing of it",
+        &[],
     ),
-    edge(Dialect::Cscape, "all of them", "as `iec`", "no page of Horner was found"),
+    edge(
+        Dialect::Cscape,
+        "all of them",
+        "as `iec`",
+        "no page of Horner was found",
+        &[
+            Use::Conversion(Class::Real, Class::Int),
+            Use::Operator("/", Class::Int),
+            Use::Operator("MOD", Class::Int),
+            Use::Type(Elementary::Time),
+            Use::Part(Part::FractionBesideReal),
+        ],
+    ),
 ];
