@@ -331,8 +331,8 @@ impl Function<'_, '_> {
         let moved = self.ins().iadd(reference, distance);
         let low = self.ins().ireduce(types::I32, moved);
         let low = self.ins().uextend(types::I64, low);
-        let high = self.ins().ushr_imm_u(reference, 32);
-        let high = self.ins().ishl_imm_u(high, 32);
+        let high = self.code(!u64::from(u32::MAX));
+        let high = self.ins().band(reference, high);
         self.ins().bor(low, high)
     }
 }

@@ -46,6 +46,7 @@ mod inline_op;
 mod inline_timer;
 mod members;
 mod runtime_call;
+mod single_bit;
 
 mod attempt;
 mod fault;
