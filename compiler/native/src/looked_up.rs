@@ -38,7 +38,7 @@ pub(crate) struct Run {
 
 impl<'p> Function<'_, 'p> {
     /// The reference that the first of the statements follows, and others after it, if looking it up once is worth while.
-    pub(crate) fn run(&mut self, statements: &'p [Statement]) -> Option<Run> {
+    pub(crate) fn next_run(&mut self, statements: &'p [Statement]) -> Option<Run> {
         if self.module.program.references.is_empty() || self.is_elsewhere() {
             return None;
         }
@@ -145,10 +145,8 @@ fn see_followed(statement: &Statement, see: &mut dyn FnMut(Place, LocalId, Type)
 fn times_followed(statement: &Statement, local: LocalId, ty: Type) -> usize {
     let mut count = 0;
     see_followed(statement, &mut |_, of, target| count += usize::from(of == local && target == ty));
-    match statement.kind {
-        StatementKind::For(_) | StatementKind::Loop { .. } => count * OF_A_LOOP,
-        _ => count,
-    }
+    let is_loop = matches!(statement.kind, StatementKind::For(_) | StatementKind::Loop { .. });
+    if is_loop { count * OF_A_LOOP } else { count }
 }
 
 fn is_assigned(statement: &Statement, pointer: &Place) -> bool {

@@ -11,7 +11,7 @@ impl<'p> Function<'_, 'p> {
     pub(crate) fn block(&mut self, block: &'p [Statement]) -> Flow {
         let mut rest = block;
         while let Some((statement, further)) = rest.split_first() {
-            let flow = match self.run(rest) {
+            let flow = match self.next_run(rest) {
                 Some(run) => {
                     let (statements, others) = rest.split_at(run.len);
                     rest = others;
