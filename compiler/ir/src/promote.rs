@@ -52,13 +52,11 @@ pub struct Gain<'a> {
     /// Whether a WHILE or REPEAT is taken that can fault and stores no element of an array, nor behind a reference: where the
     /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
-    /// Whether variables are taken that hold references. A back end that calls the runtime in a loop has a register less.
-    pub of_references: bool,
 }
 
 impl Gain<'_> {
     /// Of all that can be.
-    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false, of_references: true };
+    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false };
 }
 
 /// The program with such loops.
@@ -211,8 +209,7 @@ impl Promoter<'_> {
         };
         let is_named = place.projections.iter().all(|it| matches!(it, Projection::Field(_)));
         let is_scalar = match place.ty {
-            Type::Elementary(_) | Type::Enum(_) => true,
-            Type::Reference(_) => self.gain.of_references,
+            Type::Elementary(_) | Type::Enum(_) | Type::Reference(_) => true,
             Type::Subrange(..) | Type::String(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) => false,
         };
         is_stored && is_named && is_scalar

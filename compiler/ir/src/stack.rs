@@ -7,7 +7,8 @@ use crate::{pieces, visit};
 
 /// A register's size, to which all parts of a frame are rounded.
 const WORD: u64 = 8;
-/// What every frame has: the registers that a callee keeps, and the address to return to.
+/// What every frame has: the registers that a callee keeps, the address to return to, and the few bytes of routines whose code
+/// is in place of their calls.
 const FIXED: u64 = 256;
 /// More values than these are not alive at a time: code that large is not optimised, so that none is
 /// kept from one statement for another.

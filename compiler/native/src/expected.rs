@@ -2,33 +2,39 @@
 //! of the type. All else is left to who asks: the table of objects decides it.
 
 use crate::expectation::{Expectation, Which};
-use crate::follow::Way;
 use crate::function::Function;
 use cranelift_codegen::ir::{self as clif, BlockArg, InstBuilder, condcodes::IntCC, types};
+use staunch_ir::Type;
 use staunch_runtime::reference::{CLASS, ORIGIN, Reference, inverse};
 
 /// The bits above an object's number.
 const CLASS_BITS: i64 = 64 - CLASS as i64;
 
 impl Function<'_, '_> {
-    /// The offset in the state of what is where it is expected, in the block that is current then, and the block for all
+    /// The offset in the state of a variable that the reference leads to, or to so many bytes before it, where that is where it is
+    /// expected, in the block that is current then, and the block for all
     /// else, which is still to be filled.
-    pub(crate) fn expected(&mut self, way: Way) -> Option<(clif::Value, clif::Block)> {
-        let all = self.module.expectations(way.looked_up);
+    pub(crate) fn expected(
+        &mut self,
+        reference: clif::Value,
+        near: Option<clif::Value>,
+        ty: Type,
+    ) -> Option<(clif::Value, clif::Block)> {
+        let all = self.module.expectations(ty);
         let (last, others) = all.split_last()?;
         let (found, slow) = (self.builder.create_block(), self.builder.create_block());
         self.builder.set_cold_block(slow);
         self.builder.append_block_param(found, types::I64);
-        let low = self.ins().ireduce(types::I32, way.reference);
+        let low = self.ins().ireduce(types::I32, reference);
         let address = self.ins().uextend(types::I64, low);
-        let address = way.near.map_or(address, |near| self.ins().iadd(address, near));
-        let without_class = self.ins().ishl_imm_u(way.reference, CLASS_BITS);
+        let address = near.map_or(address, |near| self.ins().iadd(address, near));
+        let without_class = self.ins().ishl_imm_u(reference, CLASS_BITS);
         for it in others {
             let next = self.builder.create_block();
-            self.compare(it, (without_class, address), way.near.is_some(), found, next);
+            self.compare(it, (without_class, address), near.is_some(), found, next);
             self.go_on_in(next);
         }
-        self.compare(last, (without_class, address), way.near.is_some(), found, slow);
+        self.compare(last, (without_class, address), near.is_some(), found, slow);
         self.builder.seal_block(slow);
         self.go_on_in(found);
         Some((self.builder.block_params(found)[0], slow))

@@ -64,6 +64,9 @@ impl Function<'_, '_> {
 
     /// Continues in a block whose only way in has been emitted.
     pub(crate) fn go_on_in(&mut self, block: clif::Block) {
+        if self.is_elsewhere() {
+            self.builder.set_cold_block(block);
+        }
         self.builder.switch_to_block(block);
         self.builder.seal_block(block);
     }

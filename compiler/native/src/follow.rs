@@ -1,7 +1,8 @@
 //! Accesses through references: calls of the runtime, which checks each by the program's table of objects.
 
-use crate::address::Address;
-use crate::function::Function;
+use crate::address::{Address, Kind};
+use crate::function::{Function, Leads};
+use crate::place::class;
 use crate::runtime_call::by_pointer;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
@@ -9,18 +10,16 @@ use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::reference::{Followed, followed, view, wanted};
 use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, StringType, Type};
 use staunch_runtime::Repr;
-use staunch_runtime::reference::{CLASS, ORIGIN, Reference, View, Wanted, encode};
-
-/// Where the table of objects has its first one, and how far they are apart, in bytes.
-const OBJECTS_AT: i32 = encode::HEAD_BYTES;
-const OBJECT_BYTES: i64 = encode::OBJECT_BYTES;
+use staunch_runtime::reference::{ORIGIN, Reference, Wanted};
 
 /// A scalar or string that a reference leads to: the reference, and the distance from where it points.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reached {
-    way: Way,
-    ty: Type,
+    pub(crate) way: Way,
+    pub(crate) ty: Type,
     at: Location,
+    /// What is known of it where the reference has been looked up.
+    kind: Kind,
 }
 
 /// How a reference is followed.
@@ -28,11 +27,19 @@ pub(crate) struct Reached {
 pub(crate) struct Way {
     pub(crate) reference: clif::Value,
     /// From where the reference points to the variable that is looked up, in bytes; `None` if it points to it.
-    pub(crate) near: Option<clif::Value>,
+    near: Option<clif::Value>,
     /// The type of that.
-    pub(crate) looked_up: Type,
+    looked_up: Type,
     /// From where the reference points to what is looked at.
-    distance: clif::Value,
+    pub(crate) distance: clif::Value,
+    /// Where the reference leads, if it has been looked up before.
+    leads: Option<Leads>,
+}
+
+impl Way {
+    fn is_elsewhere(self) -> bool {
+        matches!(self.leads, Some(Leads::Elsewhere))
+    }
 }
 
 impl Function<'_, '_> {
@@ -52,7 +59,7 @@ impl Function<'_, '_> {
         if it.pin.is_some() || !is_simple {
             return None;
         }
-        Some(Reached { way: self.way(&it), ty: place.ty, at: it.at })
+        Some(Reached { way: self.way(&it), ty: place.ty, at: it.at, kind: self.kind_of(&it) })
     }
 
     fn way(&mut self, it: &Followed<'_>) -> Way {
@@ -61,7 +68,20 @@ impl Function<'_, '_> {
         let (near, looked_up) = self.steps(None, it.target, to_variable);
         let (distance, _) = self.steps(near, looked_up, inside);
         let distance = distance.unwrap_or_else(|| self.ins().iconst(types::I64, 0));
-        Way { reference, near, looked_up, distance }
+        let leads = if near.is_none() { self.leads(&it.pointer, it.target) } else { None };
+        Way { reference, near, looked_up, distance, leads }
+    }
+
+    /// A reference that has been looked up leads to a variable that is what it was declared to be.
+    fn kind_of(&self, it: &Followed<'_>) -> Kind {
+        let (mut ty, mut kind) = (it.target, Kind::Any);
+        for projection in it.way {
+            if let Projection::Field(field) = projection {
+                kind = class(ty, *field);
+            }
+            ty = self.module.program.part(ty, projection).expect("verified IR: the way from a reference");
+        }
+        it.pin.map_or(kind, |(block, pin)| class(Type::Block(block), pin))
     }
 
     /// Steps from a distance behind a variable, and the type of what they lead to.
@@ -125,6 +145,10 @@ impl Function<'_, '_> {
     }
 
     pub(crate) fn load_reached(&mut self, it: Reached) -> clif::Value {
+        if let Some(Leads::To(offset)) = it.way.leads {
+            let address = self.there(it.way, offset, it.kind);
+            return self.load(it.ty, address);
+        }
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
         let Some((pointer, slow)) = self.in_line(it) else { return self.load_by_runtime(it, repr) };
         let done = self.builder.create_block();
@@ -139,9 +163,21 @@ impl Function<'_, '_> {
         self.builder.block_params(done)[0]
     }
 
+    /// What a reference leads to that has been looked up.
+    fn there(&mut self, way: Way, offset: clif::Value, kind: Kind) -> Address {
+        let state = self.world()[1].1;
+        let variable = self.ins().iadd(state, offset);
+        Address { kind, ..Address::at(self.ins().iadd(variable, way.distance)) }
+    }
+
     /// Where a scalar lies if it is found in line, and the block for all else, which is still to be filled.
     fn in_line(&mut self, it: Reached) -> Option<(clif::Value, clif::Block)> {
-        let Some((offset, slow)) = self.expected(it.way) else { return self.plain(it) };
+        if it.way.is_elsewhere() {
+            return None;
+        }
+        let Some((offset, slow)) = self.expected(it.way.reference, it.way.near, it.way.looked_up) else {
+            return self.plain(it);
+        };
         let state = self.world()[1].1;
         let offset = match it.way.near {
             // The variable's own offset has been found.
@@ -161,43 +197,11 @@ impl Function<'_, '_> {
         self.load_as(clif_type(repr), space)
     }
 
-    /// Where a number lies in an object that is nothing but numbers, and the block for all else, which is still to
-    /// be filled: what the runtime says of such an object, in line.
-    fn plain(&mut self, it: Reached) -> Option<(clif::Value, clif::Block)> {
-        let View::Number(size) = view(self.module.program, it.ty) else { return None };
-        let (slow, fast) = (self.builder.create_block(), self.builder.create_block());
-        self.builder.set_cold_block(slow);
-        let [words, state] = self.world().map(|it| it.1);
-        let count = i64::from(self.module.reference_objects());
-        let object = self.ins().ushr_imm_u(it.way.reference, 32);
-        let object = self.ins().iadd_imm_s(object, -1);
-        let is_known = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, object, count);
-        let known = self.builder.create_block();
-        self.ins().brif(is_known, known, &[], slow, &[]);
-
-        self.go_on_in(known);
-        let entry = self.ins().imul_imm_s(object, OBJECT_BYTES);
-        let entry = self.ins().iadd(words, entry);
-        let start = self.ins().uload32(MemFlagsData::trusted(), entry, OBJECTS_AT);
-        let length = self.ins().uload32(MemFlagsData::trusted(), entry, OBJECTS_AT + 8);
-        let address = self.ins().ireduce(types::I32, it.way.reference);
-        let address = self.ins().uextend(types::I64, address);
-        let address = self.ins().iadd(address, it.way.distance);
-        let offset = self.ins().iadd_imm_s(address, -i64::from(ORIGIN));
-        let position = self.ins().isub(offset, start);
-        // Neither is negative where the number lies within; the sizes are far from those of 64 bits.
-        let after = self.ins().isub(length, position);
-        let after = self.ins().iadd_imm_s(after, -i64::from(size));
-        let wrong = self.ins().bor(position, after);
-        let wrong = self.ins().icmp_imm_s(IntCC::SignedLessThan, wrong, 0);
-        self.ins().brif(wrong, slow, &[], fast, &[]);
-        self.builder.seal_block(slow);
-        self.go_on_in(fast);
-        let pointer = self.ins().iadd(state, offset);
-        Some((pointer, slow))
-    }
-
     pub(crate) fn store_reached(&mut self, it: Reached, value: clif::Value) {
+        if let Some(Leads::To(offset)) = it.way.leads {
+            let address = self.there(it.way, offset, it.kind);
+            return self.store(value, address);
+        }
         let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
         let Some((pointer, slow)) = self.in_line(it) else { return self.store_by_runtime(it, repr, value) };
         let done = self.builder.create_block();
@@ -256,12 +260,16 @@ impl Function<'_, '_> {
         let program = self.module.program;
         let it = followed(program, place).expect("a place that leads through a reference");
         let way = self.way(&it);
+        let pin = it.pin.map_or(0, |(block, pin)| self.module.layout.offset(Type::Block(block), pin));
+        if let Some(Leads::To(offset)) = way.leads {
+            return self.there(way, offset, self.kind_of(&it)).plus(pin);
+        }
         let (reference, distance) = (way.reference, way.distance);
         let wanted = wanted(program, it.ty);
         let done = match (self.found_in_line(way), wanted) {
             (Some(done), _) => Some(done),
-            (None, Wanted::Exact(id)) => self.whole(reference, distance, (id, it.ty)),
-            (None, Wanted::Repr(_) | Wanted::Text(_)) => None,
+            (None, Wanted::Exact(id)) if !way.is_elsewhere() => self.whole(reference, distance, (id, it.ty)),
+            (None, Wanted::Exact(_) | Wanted::Repr(_) | Wanted::Text(_)) => None,
         };
         let (space, out) = self.space(8);
         let [words, state] = self.world();
@@ -275,13 +283,15 @@ impl Function<'_, '_> {
             offset = self.builder.block_params(done)[0];
         }
         let base = self.ins().iadd(state.1, offset);
-        let pin = it.pin.map_or(0, |(block, pin)| self.module.layout.offset(Type::Block(block), pin));
         Address::at(base).plus(pin)
     }
 
     /// Goes to the block that is returned, with the offset of what is where it is expected.
     fn found_in_line(&mut self, way: Way) -> Option<clif::Block> {
-        let (offset, slow) = self.expected(way)?;
+        if way.is_elsewhere() {
+            return None;
+        }
+        let (offset, slow) = self.expected(way.reference, way.near, way.looked_up)?;
         let done = self.builder.create_block();
         self.builder.append_block_param(done, types::I64);
         let inside = match way.near {
@@ -292,74 +302,6 @@ impl Function<'_, '_> {
         self.ins().jump(done, &[BlockArg::Value(offset)]);
         self.builder.switch_to_block(slow);
         Some(done)
-    }
-
-    /// Goes to the block that is returned, with the offset of an object that is exactly of the type and in no pool: what
-    /// the runtime says of such an object, in line. All else goes on in the block that is current then.
-    fn whole(&mut self, reference: clif::Value, distance: clif::Value, (id, ty): (u32, Type)) -> Option<clif::Block> {
-        if self.module.layout.size(ty) == 0 {
-            return None;
-        }
-        let kind = match ty {
-            Type::Struct(_) => encode::STRUCTURE,
-            Type::Array(_) => encode::ARRAY,
-            Type::Elementary(_)
-            | Type::Subrange(..)
-            | Type::Reference(_)
-            | Type::String(_)
-            | Type::Enum(_)
-            | Type::Block(_) => encode::EXACT,
-        };
-        if !self.module.has_object_of(kind, id) {
-            return None;
-        }
-        let (slow, done) = (self.builder.create_block(), self.builder.create_block());
-        self.builder.set_cold_block(slow);
-        self.builder.append_block_param(done, types::I64);
-        self.jump_to_object(reference, distance, (kind, id), slow, done);
-        self.go_on_in(slow);
-        Some(done)
-    }
-
-    fn jump_to_object(
-        &mut self,
-        reference: clif::Value,
-        distance: clif::Value,
-        (kind, id): (u32, u32),
-        slow: clif::Block,
-        done: clif::Block,
-    ) {
-        let words = self.world()[0].1;
-        let count = i64::from(self.module.reference_objects());
-        let object = self.ins().ishl_imm_u(reference, i64::from(64 - CLASS));
-        let object = self.ins().ushr_imm_u(object, i64::from(64 - CLASS + 32));
-        let object = self.ins().iadd_imm_s(object, -1);
-        let is_known = self.ins().icmp_imm_u(IntCC::UnsignedLessThan, object, count);
-        let known = self.builder.create_block();
-        self.ins().brif(is_known, known, &[], slow, &[]);
-
-        self.go_on_in(known);
-        let entry = self.ins().imul_imm_s(object, OBJECT_BYTES);
-        let entry = self.ins().iadd(words, entry);
-        let word = |this: &mut Self, base, at| this.ins().uload32(MemFlagsData::trusted(), base, at);
-        let start = word(self, entry, OBJECTS_AT);
-        let mark = word(self, entry, OBJECTS_AT + 12);
-        let node = word(self, entry, OBJECTS_AT + 16);
-        let node = self.ins().ishl_imm_u(node, 2);
-        let node = self.ins().iadd(words, node);
-        let found_kind = word(self, node, 0);
-        let found_id = word(self, node, 8);
-        let address = self.ins().ireduce(types::I32, reference);
-        let address = self.ins().uextend(types::I64, address);
-        let address = self.ins().iadd(address, distance);
-        let offset = self.ins().iadd_imm_s(address, -i64::from(ORIGIN));
-        let position = self.ins().isub(offset, start);
-        let other_kind = self.ins().bxor_imm_u(found_kind, i64::from(kind));
-        let other_type = self.ins().bxor_imm_u(found_id, i64::from(id));
-        let wrong = self.ins().bor(position, mark);
-        let other = self.ins().bor(other_kind, other_type);
-        let wrong = self.ins().bor(wrong, other);
-        self.ins().brif(wrong, slow, &[], done, &[BlockArg::Value(offset)]);
     }
 
     /// The reference to a place.
@@ -389,8 +331,8 @@ impl Function<'_, '_> {
         let moved = self.ins().iadd(reference, distance);
         let low = self.ins().ireduce(types::I32, moved);
         let low = self.ins().uextend(types::I64, low);
-        let high = self.ins().ushr_imm_u(reference, 32);
-        let high = self.ins().ishl_imm_u(high, 32);
+        let high = self.code(!u64::from(u32::MAX));
+        let high = self.ins().band(reference, high);
         self.ins().bor(low, high)
     }
 }

@@ -37,6 +37,10 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) copied: usize,
     /// Operations of unrolled loops so far.
     pub(crate) unrolled: usize,
+    /// The references that the statements follow and that have been looked up.
+    pub(crate) looked_up: Vec<LookedUp>,
+    /// Operations of statements that are there twice for that, so far.
+    pub(crate) doubled: usize,
     /// How many [`Finally`](staunch_ir::StatementKind::Finally) are around: what they store after a fault reads locals.
     pub(crate) endings: usize,
     /// The FOR loops among them whose counters are in registers.
@@ -101,6 +105,24 @@ impl LoopFrame {
     pub(crate) fn to(after: clif::Block) -> Self {
         Self { next: after, after, is_continued: false, is_left: false, few: Few::No, taken: None }
     }
+}
+
+/// A reference that has been looked up for the statements that are being emitted.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LookedUp {
+    pub(crate) pointer: LocalId,
+    /// What it was looked up as.
+    pub(crate) ty: Type,
+    pub(crate) leads: Leads,
+}
+
+/// Where a reference leads.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Leads {
+    /// To this offset in the state.
+    To(clif::Value),
+    /// Not to where it is expected.
+    Elsewhere,
 }
 
 /// The blocks that return faults, filled when the function is complete.
@@ -170,6 +192,8 @@ impl<'a, 'p> Function<'a, 'p> {
             seen: Seen::default(),
             copied: 0,
             unrolled: 0,
+            looked_up: Vec::new(),
+            doubled: 0,
             endings: 0,
             counters: Vec::new(),
             registers: Vec::new(),

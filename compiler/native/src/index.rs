@@ -84,7 +84,8 @@ impl Function<'_, '_> {
         }
     }
 
-    fn instruction(&self, value: clif::Value) -> Option<&InstructionData> {
+    /// What makes a value.
+    pub(crate) fn instruction(&self, value: clif::Value) -> Option<&InstructionData> {
         let dfg = &self.builder.func.dfg;
         Some(&dfg.insts[dfg.value_def(value).inst()?])
     }

@@ -1,4 +1,4 @@
-//! The steps of the most used standard blocks, emitted in place and without branches: a call and
+//! The steps of the most used standard blocks, emitted in place, all but timers without branches: a call and
 //! its return cost as much as the step. Counts are computed at twice their bits where there are
 //! such. A test drives each row here against the runtime's own step.
 

@@ -4,6 +4,7 @@
 use crate::function::Function;
 use crate::operands::Operands;
 use crate::signature::clif_type;
+use crate::single_bit;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, Value as Clif, types};
 use staunch_ir::{Expr, FaultKind, Op, Program, Repr};
@@ -194,7 +195,7 @@ fn shift(f: &mut Function<'_, '_>, o: &Operands, by: fn(&mut Function<'_, '_>, C
     let (value, count) = (o.values[0], o.values[1]);
     let ty = clif_type(o.repr);
     let width = i64::from(ty.bits());
-    if let Some(constant) = o.constants[1].and_then(staunch_ir::Value::as_integer) {
+    if let Some(constant) = constant_count(f, o) {
         return match constant {
             ..=0 => value,
             it if it < i128::from(width) => by(f, value, count),
@@ -209,11 +210,24 @@ fn shift(f: &mut Function<'_, '_>, o: &Operands, by: fn(&mut Function<'_, '_>, C
     f.ins().select(is_past, nothing, kept)
 }
 
+/// A count that is a constant, or the counter of a loop whose turns are there one by one.
+fn constant_count(f: &Function<'_, '_>, o: &Operands) -> Option<i128> {
+    let constant = o.constants[1].and_then(staunch_ir::Value::as_integer);
+    constant.or_else(|| {
+        let unused = 64 - f.builder.func.dfg.value_type(o.values[1]).bits().clamp(1, 64);
+        let bits = f.known_bits(o.values[1])?;
+        Some(i128::from((bits << unused).cast_signed() >> unused))
+    })
+}
+
 /// The lower half goes on by a distance, and wraps; the upper half stays.
 fn advance(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (value, distance) = (o.values[0], o.values[1]);
     let ty = clif_type(o.repr);
-    let distance = if ty == types::I64 { distance } else { f.ins().ireduce(ty, distance) };
+    if ty == types::I64 {
+        return f.advanced(value, distance);
+    }
+    let distance = f.ins().ireduce(ty, distance);
     let moved = f.ins().iadd(value, distance);
     let changed = f.ins().bxor(value, moved);
     let lower = f.integer(ty, (1 << (ty.bits() / 2)) - 1);
@@ -248,7 +262,11 @@ fn compare(f: &mut Function<'_, '_>, repr: Repr, order: Order, a: Clif, b: Clif)
         (Order::LessOrEqual, true) => IntCC::SignedLessThanOrEqual,
         (Order::LessOrEqual, false) => IntCC::UnsignedLessThanOrEqual,
     };
-    f.ins().icmp(condition, a, b)
+    let bit = match order {
+        Order::Equal | Order::NotEqual => single_bit::test(f, matches!(order, Order::Equal), a, b),
+        Order::Less | Order::LessOrEqual => None,
+    };
+    bit.unwrap_or_else(|| f.ins().icmp(condition, a, b))
 }
 
 fn less(f: &mut Function<'_, '_>, repr: Repr, a: Clif, b: Clif) -> Clif {

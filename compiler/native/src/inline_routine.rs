@@ -6,19 +6,25 @@
 //!                                 store v3, v1
 //! ```
 //!
-//! It applies to a routine whose code is a few instructions and which keeps nothing in a frame of its own and names no
-//! data. What it stores, and
-//! in which order, stays as it is, and so does the code of a fault: the callee's return becomes a jump to what follows the
-//! call. It may not assume that the callee is still called elsewhere: its own function stays, and a linker drops it.
+//! It applies to a routine whose code is a few instructions, but for what is away from the common path, and which keeps little in
+//! a frame of its own. What it stores, and in which order, stays as it is, and so does the code of a fault: the callee's return
+//! becomes a jump to what follows the call. It may not assume that the callee is still called elsewhere: its own function stays,
+//! and a linker drops it.
 
 use cranelift_codegen::inline::{Inline, InlineCommand};
-use cranelift_codegen::ir::{ExternalName, FuncRef, Function, Inst, Opcode, Value};
+use cranelift_codegen::ir::{
+    ExternalName, FuncRef, Function, GlobalValueData, Inst, Opcode, UserExternalName, UserExternalNameRef, Value,
+};
 use cranelift_module::FuncId;
 use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// A routine of more instructions is called.
 const SMALL: usize = 96;
+/// So is one of more than these, with those away from the common path.
+const MOST: usize = 256;
+/// Bytes of frames that a function gets beside its own: [`stack`](staunch_ir::stack) allows for so many.
+const MOST_OF_FRAMES: u32 = 128;
 /// By so many instructions a function may grow in all cases, and beyond that by a part of its own.
 const GROWTH: usize = 512;
 const PART: usize = 2;
@@ -30,15 +36,19 @@ pub(crate) struct SmallRoutines(HashMap<FuncId, Function>);
 impl SmallRoutines {
     /// Notes a routine's code before the code generator changes it, if it is small.
     pub(crate) fn note(&mut self, id: FuncId, function: &Function) {
-        let needs_nothing = function.sized_stack_slots.is_empty() && function.global_values.is_empty();
-        if function.dfg.num_insts() <= SMALL && needs_nothing {
+        let is_small = function.dfg.num_insts() <= MOST && common(function) <= SMALL;
+        if is_small && frame(function) <= MOST_OF_FRAMES && function.global_values.values().all(is_data) {
             self.0.insert(id, function.clone());
         }
     }
 
-    /// What puts them in place of their calls in a function of that size.
-    pub(crate) fn inliner(&self, caller_size: usize) -> Inliner<'_> {
-        Inliner { small: &self.0, left: GROWTH + caller_size / PART }
+    /// What puts them in place of their calls in a function, which then names what they name.
+    pub(crate) fn inliner(&self, caller: &mut Function) -> Inliner<'_> {
+        let callees: Vec<_> = caller.dfg.ext_funcs.keys().filter_map(|it| self.0.get(&called(caller, it)?)).collect();
+        for name in callees.into_iter().flat_map(data) {
+            caller.declare_imported_user_function(name.clone());
+        }
+        Inliner { small: &self.0, left: GROWTH + caller.dfg.num_insts() / PART, left_of_frames: MOST_OF_FRAMES }
     }
 }
 
@@ -46,20 +56,69 @@ pub(crate) struct Inliner<'a> {
     small: &'a HashMap<FuncId, Function>,
     /// By so many instructions the caller may still grow.
     left: usize,
+    left_of_frames: u32,
 }
 
 impl Inline for Inliner<'_> {
     fn inline(&mut self, caller: &Function, _: Inst, _: Opcode, callee: FuncRef, _: &[Value]) -> InlineCommand<'_> {
         let found = called(caller, callee).and_then(|id| self.small.get(&id));
         let rest = found.and_then(|it| self.left.checked_sub(it.dfg.num_insts()));
-        match (found, rest) {
-            (Some(function), Some(rest)) => {
-                self.left = rest;
-                InlineCommand::Inline { callee: Cow::Borrowed(function), visit_callee: false }
+        let rest_of_frames = found.and_then(|it| self.left_of_frames.checked_sub(frame(it)));
+        match (found, rest, rest_of_frames) {
+            (Some(function), Some(rest), Some(rest_of_frames)) => {
+                (self.left, self.left_of_frames) = (rest, rest_of_frames);
+                InlineCommand::Inline { callee: renamed(function, caller), visit_callee: false }
             }
             _ => InlineCommand::KeepCall,
         }
     }
+}
+
+/// The instructions on the common path.
+fn common(function: &Function) -> usize {
+    let blocks = function.layout.blocks().filter(|it| !function.layout.is_cold(*it));
+    blocks.map(|it| function.layout.block_insts(it).count()).sum()
+}
+
+/// The bytes of a function's variables in its frame.
+fn frame(function: &Function) -> u32 {
+    let sizes = function.sized_stack_slots.values().map(|it| it.size.next_multiple_of(8));
+    sizes.fold(0, u32::saturating_add)
+}
+
+fn name_of(of: &GlobalValueData) -> Option<UserExternalNameRef> {
+    match of {
+        GlobalValueData::Symbol { name: ExternalName::User(name), .. } => Some(*name),
+        GlobalValueData::Symbol { .. }
+        | GlobalValueData::VMContext
+        | GlobalValueData::Load { .. }
+        | GlobalValueData::IAddImm { .. }
+        | GlobalValueData::DynScaleTargetConst { .. } => None,
+    }
+}
+
+fn is_data(it: &GlobalValueData) -> bool {
+    name_of(it).is_some()
+}
+
+/// The names of the data that a function reads.
+fn data(of: &Function) -> impl Iterator<Item = &UserExternalName> {
+    of.global_values.values().filter_map(name_of).map(|it| &of.params.user_named_funcs()[it])
+}
+
+/// A routine whose data have the names of its caller: the inliner leaves them as they are.
+fn renamed<'a>(function: &'a Function, caller: &Function) -> Cow<'a, Function> {
+    if function.global_values.is_empty() {
+        return Cow::Borrowed(function);
+    }
+    let mut renamed = function.clone();
+    for value in renamed.global_values.values_mut() {
+        let GlobalValueData::Symbol { name: ExternalName::User(name), .. } = value else { continue };
+        let wanted = &function.params.user_named_funcs()[*name];
+        let of_caller = caller.params.user_named_funcs().iter().find(|(_, it)| *it == wanted);
+        *name = of_caller.expect("the caller names what its callees name").0;
+    }
+    Cow::Owned(renamed)
 }
 
 fn called(caller: &Function, callee: FuncRef) -> Option<FuncId> {

@@ -22,8 +22,10 @@ mod expectation;
 mod expected;
 mod follow;
 mod function;
+mod looked_up;
 mod loop_start;
 mod loops;
+mod object_in_line;
 mod statement;
 mod turns;
 mod unrolled;
@@ -44,6 +46,7 @@ mod inline_op;
 mod inline_timer;
 mod members;
 mod runtime_call;
+mod single_bit;
 
 mod attempt;
 mod fault;

@@ -218,7 +218,8 @@ impl<'p> ModuleEmitter<'p> {
             let text = context.func.display();
             writeln!(listing, "; {name}\n{text}").expect("writing to a String does not fail");
         }
-        let inlined = context.inline(self.small.inliner(context.func.dfg.num_insts()));
+        let inliner = self.small.inliner(&mut context.func);
+        let inlined = context.inline(inliner);
         inlined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })?;
         self.small.note(id, &context.func);
         let defined = if context.func.dfg.num_insts() > LARGE {

@@ -15,7 +15,7 @@ pub(crate) enum PlaceValue {
 }
 
 /// Of a member's storage.
-fn class(of: Type, field: FieldId) -> Kind {
+pub(crate) fn class(of: Type, field: FieldId) -> Kind {
     match of {
         Type::Struct(id) => Kind::Class(Class::of_field(id, field)),
         Type::Block(id) => Kind::Class(Class::of_pin(id.info(), field.index())),

@@ -32,7 +32,7 @@ pub(crate) struct Emitted {
 
 /// Puts a whole program into `output`; a listing is added to where one is wanted.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
-    let gain = Gain { suits: &is_in_line, of_reads: false, of_scalars: true, of_references: false };
+    let gain = Gain { suits: &is_in_line, of_reads: false, of_scalars: true };
     let program = &promoted(program, gain);
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
     let effects = effects(program, &RULES);

@@ -9,8 +9,20 @@ use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Typ
 impl<'p> Function<'_, 'p> {
     /// What comes after a statement that control does not pass is left out.
     pub(crate) fn block(&mut self, block: &'p [Statement]) -> Flow {
-        for statement in block {
-            if self.statement(statement) == Flow::Leaves {
+        let mut rest = block;
+        while let Some((statement, further)) = rest.split_first() {
+            let flow = match self.next_run(rest) {
+                Some(run) => {
+                    let (statements, others) = rest.split_at(run.len);
+                    rest = others;
+                    self.looked_up_once(&run, statements)
+                }
+                None => {
+                    rest = further;
+                    self.statement(statement)
+                }
+            };
+            if flow == Flow::Leaves {
                 return Flow::Leaves;
             }
         }

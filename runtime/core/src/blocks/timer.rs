@@ -1,8 +1,11 @@
 //! Timers. They have no clock: they measure from the scan time they are called with, so within
 //! one scan no time passes. A negative `pt` acts as 0.
+//!
+//! A timer is idle, or has expired, in nearly all scans. So a step branches, and such a scan measures nothing.
 
 use crate::block::pins;
 use crate::{Context, Time};
+use core::mem;
 
 /// `TON`: `q` once `in_` has been TRUE for `pt`, until it falls. `et` is the time it has been
 /// TRUE, up to `pt`. While it runs, each call's `pt` counts; once it has expired, `q` and `et`
@@ -31,14 +34,18 @@ impl Ton {
     /// One call with the inputs as they are.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
-        let rises = self.in_ & !self.in_before;
-        self.in_before = self.in_;
-        self.start = if rises { cx.now() } else { self.start };
-        let held = self.in_ & self.q;
-        let run = Run::measure(self.start, cx.now(), self.pt);
-        let et = if held { self.et } else { run.elapsed };
-        self.et = if self.in_ { et } else { 0 };
-        self.q = self.in_ & (held | run.over);
+        let before = mem::replace(&mut self.in_before, self.in_);
+        if !self.in_ {
+            (self.q, self.et) = (false, 0);
+            return;
+        }
+        if !before {
+            self.start = cx.now();
+        }
+        if !self.q {
+            let run = Run::measure(self.start, cx.now(), self.pt);
+            (self.q, self.et) = (run.over, run.elapsed);
+        }
     }
 }
 
@@ -75,13 +82,18 @@ impl Tof {
     /// One call with the inputs as they are.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
-        let falls = !self.in_ & self.in_before;
-        self.in_before = self.in_;
-        self.start = if falls { cx.now() } else { self.start };
-        let run = Run::measure(self.start, cx.now(), self.pt);
-        let et = if self.q { run.elapsed } else { self.et };
-        self.et = if self.in_ { 0 } else { et };
-        self.q = self.in_ | (self.q & !run.over);
+        let before = mem::replace(&mut self.in_before, self.in_);
+        if self.in_ {
+            (self.q, self.et) = (true, 0);
+            return;
+        }
+        if before {
+            self.start = cx.now();
+        }
+        if self.q {
+            let run = Run::measure(self.start, cx.now(), self.pt);
+            (self.q, self.et) = (!run.over, run.elapsed);
+        }
     }
 }
 
@@ -119,14 +131,20 @@ impl Tp {
     /// One call with the inputs as they are.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
-        let begins = self.in_ & !self.in_before & !self.q;
-        self.in_before = self.in_;
-        self.start = if begins { cx.now() } else { self.start };
-        let pulse = begins | self.q;
+        let before = mem::replace(&mut self.in_before, self.in_);
+        if !self.q {
+            if !self.in_ {
+                self.et = 0;
+                return;
+            }
+            if before {
+                return;
+            }
+            self.start = cx.now();
+        }
         let run = Run::measure(self.start, cx.now(), self.pt);
-        let et = if pulse { run.elapsed } else { self.et };
-        self.q = pulse & !run.over;
-        self.et = if self.in_ | self.q { et } else { 0 };
+        self.q = !run.over;
+        self.et = if self.in_ | self.q { run.elapsed } else { 0 };
     }
 }
 
