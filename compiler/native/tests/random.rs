@@ -97,6 +97,7 @@ impl Maker {
         Program {
             files: vec![SourceFile { path: "random.st".to_owned(), system: staunch_runtime::Family::Iec }],
             bounds: vec![LIMITS],
+            milliseconds: None,
             enums: vec![Enum {
                 name: "Color".to_owned(),
                 doc: None,

@@ -82,6 +82,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         files: vec![SourceFile { path: "main.st".to_owned(), system: staunch_runtime::Family::Iec }],
         enums: Vec::new(),
         bounds: Vec::new(),
+        milliseconds: None,
         arrays,
         interfaces: Vec::new(),
         references: Vec::new(),
