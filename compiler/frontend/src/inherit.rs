@@ -142,10 +142,29 @@ impl<'s> Expansion<'_, 's> {
         depth <= MAX_DEPTH
     }
 
+    /// EXTENDS where IMPLEMENTS is meant; the fix is given where no IMPLEMENTS follows.
+    fn interface_extended(&self, pou: &Pou<'s>, base: Name<'s>) -> Diagnostic {
+        let (name, kind) = (base.text, pou.kind.word());
+        let message = format!("`{name}` is an INTERFACE, which a {kind} implements");
+        let error = Diagnostic::new(Code::E0102, base.span, message)
+            .label("expected a class to extend")
+            .help(format!("write `IMPLEMENTS {name}`"));
+        let head = Span { start: pou.name.span.end, end: base.span.start, ..base.span };
+        let word = self.classes.text(head).to_ascii_uppercase().find("EXTENDS");
+        match word.and_then(|it| u32::try_from(it).ok()).filter(|_| pou.implements.is_empty()) {
+            Some(at) => error.fix(Span { start: head.start + at, ..head }, "IMPLEMENTS "),
+            None => error,
+        }
+    }
+
     fn base(&mut self, pou: &Pou<'s>, base: Name<'s>, around: &[usize]) -> Option<usize> {
         let at = match self.classes.base_of(pou, base) {
             Base::Class(at) => at,
             Base::NotHere => return None,
+            Base::Interface => {
+                self.diagnostics.push(self.interface_extended(pou, base));
+                return None;
+            }
             Base::Unknown => {
                 if crate::dialect::bare_block(self.classes.dialect(base.span), base.text).is_some() {
                     let message = format!("`{}` is a standard block, and nothing extends it", base.text);

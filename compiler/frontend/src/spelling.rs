@@ -49,8 +49,14 @@ pub fn nearest<'c>(name: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
     candidates
         .map(|candidate| (distance(candidate), candidate))
         .filter(|(distance, candidate)| *distance <= limit && *distance < candidate.chars().count())
-        .min()
+        // The first letter is rarely the wrong one.
+        .min_by_key(|(distance, candidate)| (*distance, !begin_alike(&name, candidate), *candidate))
         .map(|(_, candidate)| candidate)
+}
+
+fn begin_alike(a: &str, b: &str) -> bool {
+    let first = |it: &str| it.chars().next().map(|it| it.to_ascii_lowercase());
+    first(a) == first(b)
 }
 
 /// The letters that a name has, as a set of 64: that two names are far apart is most often seen in it.

@@ -210,6 +210,7 @@ impl<'s> Checker<'_, 's> {
         if let Some((text, index)) = self.character_of(target) {
             return self.assign_character(text, index, value, span);
         }
+        self.refuse_address_assigned(target, value)?;
         if self.is_run() {
             self.check_binding(target, value)?;
             self.note_binding(target, value);

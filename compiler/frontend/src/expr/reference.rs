@@ -590,6 +590,35 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
+    /// `r := REF(x)` to a REFERENCE TO, which means the variable that it refers to.
+    pub(crate) fn refuse_address_assigned(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>) -> Option<()> {
+        let span = target.span.to(value.span);
+        let Ast::Call(callee, arguments) = &value.kind else { return Some(()) };
+        let takes_address = matches!(&callee.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case("REF"));
+        let [argument] = arguments.as_slice() else { return Some(()) };
+        if !takes_address || !self.leads_to_a_value(target) {
+            return Some(());
+        }
+        let [to, from] = [target.span, argument.span].map(|it| self.decl.log.sources.text(it).to_owned());
+        self.report(
+            Diagnostic::new(Code::E0201, span, format!("`{to} := …` assigns to the variable that `{to}` refers to"))
+                .label("an address is given here")
+                .help(format!("to make `{to}` refer to `{from}`, write `{to} REF= {from}`"))
+                .fix(span, format!("{to} REF= {from}")),
+        );
+        None
+    }
+
+    /// Whether it is a REFERENCE TO what is not a reference itself.
+    fn leads_to_a_value(&mut self, target: &ast::Expr<'s>) -> bool {
+        // What is not known is reported elsewhere, and an index is not evaluated twice.
+        if !matches!(target.kind, Ast::Name(_)) || self.static_type(target).is_none() {
+            return false;
+        }
+        let found = self.place_of_reference(target).and_then(|it| self.ref_type(it.place.ty));
+        found.is_some_and(|(_, it)| it.kind == RefKind::ReferenceTo && !matches!(it.target, Type::Reference(_)))
+    }
+
     fn no_reference(&mut self, found: Type, wanted: Type, span: Span) -> Option<Expr> {
         let (expected, name) = (self.type_name(wanted), self.type_name(found));
         let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {name}"))

@@ -10,7 +10,7 @@ use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site};
 use crate::source::{Sources, Span};
 use crate::spelling::Key;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::Elementary;
 
 /// Other names are followed no farther: those that lead back to themselves are reported later.
@@ -29,6 +29,8 @@ pub(super) struct Class<'s> {
 /// What a name after EXTENDS means.
 pub(super) enum Base {
     Class(usize),
+    /// An INTERFACE, which is implemented.
+    Interface,
     /// Nothing has the name.
     Unknown,
     /// What has it is not seen here, or there are several: that is reported when all is declared.
@@ -40,6 +42,8 @@ pub(super) struct Classes<'s> {
     by_declaration: FxHashMap<Span, usize>,
     /// For each POU, the class that it is.
     pous: Vec<Option<usize>>,
+    /// The POUs that are INTERFACEs.
+    interfaces: FxHashSet<usize>,
     /// For each type, the one that it is another name for.
     aliases: Vec<Option<Path<'s>>>,
     /// The values of global CONSTANTs.
@@ -55,6 +59,7 @@ impl<'s> Classes<'s> {
             all: Vec::new(),
             by_declaration: FxHashMap::default(),
             pous: Vec::new(),
+            interfaces: FxHashSet::default(),
             aliases: Vec::new(),
             constants: Vec::new(),
             names: Names::default(),
@@ -90,6 +95,7 @@ impl<'s> Classes<'s> {
                 if pou.kind != PouKind::Test {
                     self.enter(pou.name, Entry::Pou(self.pous.len()), internal);
                 }
+                self.interfaces.extend(Some(self.pous.len()).filter(|_| pou.kind == PouKind::Interface));
                 let class = pou.kind.is_block().then_some(self.all.len());
                 self.pous.push(class);
                 if pou.kind.is_block() {
@@ -129,6 +135,10 @@ impl<'s> Classes<'s> {
         }
     }
 
+    pub fn text(&self, span: Span) -> &'s str {
+        self.sources.text(span)
+    }
+
     pub fn dialect(&self, span: Span) -> Dialect {
         self.dialects.get(usize::from(span.file)).copied().unwrap_or_default()
     }
@@ -151,6 +161,7 @@ impl<'s> Classes<'s> {
     pub fn base_of(&self, pou: &Pou<'s>, base: Name<'s>) -> Base {
         let path = pou.bases.iter().find(|it| it.last().is_some_and(|it| it.span == base.span));
         match self.lookup(path.map_or(&[base], Vec::as_slice)) {
+            Found::One(Meaning::Declared(Entry::Pou(at))) if self.interfaces.contains(&at) => Base::Interface,
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.pous[at].map_or(Base::Unknown, Base::Class),
             Found::Several(_) => Base::NotHere,
             Found::Nothing if self.names.root(base.text).is_some() || !self.names.holders(base.text).is_empty() => {
