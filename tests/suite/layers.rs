@@ -11,8 +11,8 @@ const ROOT: &str = "compiler/frontend/src";
 const LAYERS: [&str; 27] = [
     "vendor",
     "source",
-    "diagnostic",
     "spelling",
+    "diagnostic",
     "ast",
     "allow",
     "foreign",
