@@ -33,7 +33,8 @@ pub enum Part {
     Subrange,
     /// A division of integers, or MOD, by 0 that is reached. No program notes it: most divide by what is not 0.
     DivisionByZero,
-    /// A comparison of durations with one that is not a whole number of binary fractions of a second, or of two variables.
+    /// A comparison of durations with one that is not a whole number of binary fractions of a second, or of two variables;
+    /// and a literal with decimals of minutes, hours or days.
     ComparedTimes,
     /// A number with a fraction that a REAL does not hold exactly, beside a REAL.
     FractionBesideReal,

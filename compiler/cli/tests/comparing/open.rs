@@ -97,6 +97,7 @@ END_PROGRAM
         ("times_equal", "x = T#1.3s", 4),
         ("times_of_a_timer", "d.ET > T#130ms", 4),
         ("times_of_two", "d.ET > x", 4),
+        ("times_of_minutes", "x = T#1.15m", 4),
         ("times_exact", "d.ET > T#500ms", 0),
     ] {
         for to in ["openplc", "iec"] {

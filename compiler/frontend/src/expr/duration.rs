@@ -5,7 +5,7 @@ use super::operand::Operand;
 use super::operator::{Meeting, Sides, arithmetic_op};
 use crate::dialect::rules::TimeAsNumber;
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Conversion, Elementary, Expr, Op, Type, Value};
+use staunch_ir::{Conversion, Elementary, Expr, Op, Part, Type, Use, Value};
 use staunch_runtime::Time;
 use staunch_runtime::literal::LiteralErrorKind;
 use staunch_runtime::time::MILLISECOND;
@@ -206,6 +206,9 @@ impl Checker<'_, '_> {
         span: Span,
     ) -> Option<(Elementary, Value)> {
         let kept = self.decl.dialect(span).rules().own(ty);
+        if has_decimals(self.decl.log.sources.text(span)) {
+            self.note_use(Use::Part(Part::ComparedTimes), span);
+        }
         match (ty, kept) {
             (Elementary::Time, _) => self.refuse_unkept(nanoseconds, span)?,
             (Elementary::Ltime, Elementary::Ultime) if nanoseconds < 0 => {
@@ -266,4 +269,11 @@ fn spelled(ty: Elementary, nanoseconds: i128) -> String {
     // Writing to a String cannot fail.
     _ = staunch_runtime::format::time(&mut text, ty, bits.unwrap_or_default());
     text
+}
+
+/// Decimals of minutes, hours or days, as `T#1.15m`: a double does not hold most of them, whatever they come to in seconds.
+fn has_decimals(literal: &str) -> bool {
+    let unit = literal.trim_end_matches(|it: char| it.is_ascii_alphabetic()).len();
+    let is_long = ["m", "h", "d"].iter().any(|it| literal[unit..].eq_ignore_ascii_case(it));
+    is_long && literal.contains('.')
 }

@@ -39,6 +39,11 @@ impl Alphabet {
         let choice = |(at, input): (usize, &Input)| {
             let mut choice = choice(pair, facts, input, assumptions.near(at));
             assumptions.narrow(at, &mut choice, repr(pair, input));
+            let types = [0, 1].map(|side| pair.scalar(side, input.scalars[side]).ty);
+            if let Some(Range { step, .. }) = times_of_both(pair, types) {
+                // What is next to the end of a range may be no time of a system that counts milliseconds.
+                choice.values.retain(|it| it.as_integer().is_none_or(|it| it % step == 0));
+            }
             choice
         };
         let choices: Vec<Choice> = pair.inputs.iter().enumerate().map(choice).collect();

@@ -268,6 +268,13 @@ pub const EDGES: &[Edge] = &[
     ),
     edge(
         Dialect::Siemens,
+        "the text of a REAL, and spaces before the text of a number",
+        "as in `iec`, without spaces",
+        "S7-1200 manual, 03/2014, p. 295: no leading `+`, and examples with one, right-justified; 11/2011, table 8-34: '123'",
+        &[Use::Conversion(Class::Num, Class::String)],
+    ),
+    edge(
+        Dialect::Siemens,
         "`/` and `MOD` by zero; `LIMIT` with MN above MX",
         "0; IN",
         "the S7-1200 manual's tables of ENO say it, but the pages could not be read again for this table",
@@ -289,10 +296,15 @@ pub const EDGES: &[Edge] = &[
     ),
     edge(
         Dialect::Cscape,
-        "all of them",
+        "every value of an operation, function or conversion on this page",
         "as `iec`",
         "no page of Horner was found",
         &[
+            Use::Function("MID"),
+            Use::Function("INSERT"),
+            Use::Function("DELETE"),
+            Use::Function("REPLACE"),
+            Use::Conversion(Class::Num, Class::String),
             Use::Conversion(Class::Real, Class::Int),
             Use::Operator("/", Class::Int),
             Use::Operator("MOD", Class::Int),
