@@ -205,6 +205,15 @@ fn a_file_of_retained_variables_keeps_its_link_and_has_one_owner() {
         has(&second.err(2), &[name, "another process keeps its retained variables there"]);
     }
     folder.staunch("run main.st --scans 1 --retain l.ret -q").out(0);
+    // A file that the run itself has made.
+    let mut first = folder.command("run main.st --realtime --retain new.ret").spawn().unwrap();
+    while fs::hard_link(folder.0.join("new.ret"), folder.0.join("other.ret")).is_err() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    let second = folder.staunch("run main.st --scans 1 --retain other.ret");
+    first.kill().unwrap();
+    first.wait().unwrap();
+    has(&second.err(2), &["another process keeps its retained variables there"]);
 }
 
 /// A pipe is said to be waited for; what has no end, and what leads nowhere, is refused.
@@ -240,4 +249,15 @@ fn what_is_no_file_is_a_message() {
         has(&Ran::of(ran).err(124), &["note: pipe is a pipe: waiting until it is"]);
     }
     has(&folder.staunch("run main.st --retain pipe").err(2), &["need a file"]);
+}
+
+#[test]
+fn assumptions_may_come_from_a_pipe() {
+    let folder = Folder::with("assumed", &[("main.st", COUNTER)]);
+    let line = format!(
+        "{} compare main.st --from iec --to codesys --assume <(printf 'no run\\nnobody 1..2\\n')",
+        env!("CARGO_BIN_EXE_staunch")
+    );
+    let ran = Command::new("bash").args(["-c", &line]).current_dir(&folder.0).output().unwrap();
+    has(&Ran::of(ran).err(2), &[":2: ", "`nobody`"]);
 }

@@ -101,8 +101,8 @@ impl Disk {
 
 impl Storage for Disk {
     fn create(&mut self) -> io::Result<()> {
-        self.new = Some(File::create(&self.aside)?);
-        Ok(())
+        // Nobody else has it yet; the lock stays with it under the name that it is given, and under others.
+        lock::hold(self.new.insert(File::create(&self.aside)?))
     }
 
     fn write(&mut self, which: Which, offset: usize, bytes: &[u8]) -> io::Result<usize> {

@@ -9,7 +9,6 @@ mod tokens;
 use super::choice::{Choice, Covered};
 use crate::compare::pair::Pair;
 use crate::compare::program::facts::Numbers;
-use crate::input::text;
 use crate::machine;
 use condition::{Condition, is_within, order};
 use parser::{Named, Parser};
@@ -38,9 +37,9 @@ pub struct Assumptions {
 pub struct Mentioned(HashSet<String>);
 
 impl Mentioned {
-    pub fn read(path: &Path) -> Result<Self, String> {
-        let tokens = text(path)?.lines().filter_map(|it| tokens(uncommented(it)).ok()).flatten().collect::<Vec<_>>();
-        Ok(Self(tokens.into_iter().map(|it| it.to_lowercase()).collect()))
+    pub fn of(text: &str) -> Self {
+        let tokens = text.lines().filter_map(|it| tokens(uncommented(it)).ok()).flatten().collect::<Vec<_>>();
+        Self(tokens.into_iter().map(|it| it.to_lowercase()).collect())
     }
 
     pub fn has(&self, path: &str) -> bool {
@@ -49,11 +48,11 @@ impl Mentioned {
 }
 
 impl Assumptions {
-    pub fn read(path: &Path, pair: &Pair) -> Result<Self, String> {
-        let text = text(path)?;
+    /// Of the text of a file.
+    pub fn of(path: &Path, text: &str, pair: &Pair) -> Result<Self, String> {
         let maps = [machine::map(&pair.sides[0].program)?, machine::map(&pair.sides[1].program)?];
         let inputs: Vec<_> = pair.inputs.iter().map(|it| Named::of(pair, &maps, it)).collect();
-        let found = Self::parse(&text, &inputs);
+        let found = Self::parse(text, &inputs);
         found.map_err(|(line, text)| format!("{}:{line}: {text}", path.display()))
     }
 

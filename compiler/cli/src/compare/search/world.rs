@@ -9,6 +9,7 @@ use crate::compare::inputs::assume::{Assumptions, Mentioned};
 use crate::compare::pair::Pair;
 use crate::compare::program::facts::Facts;
 use crate::compare::program::unfollowed;
+use crate::input::text;
 use staunch_ir::Value;
 use std::collections::BTreeSet;
 
@@ -42,7 +43,9 @@ impl World {
     /// The inputs, and what is known of them.
     pub fn of(pair: &mut Pair, args: &Compare) -> Result<Self, String> {
         let mut facts = [0, 1].map(|side: usize| Facts::of(&pair.sides[side].program));
-        let mentioned = args.assume.as_deref().map(Mentioned::read).transpose()?.unwrap_or_default();
+        // Read once: it may be a pipe.
+        let assumed = args.assume.as_deref().map(text).transpose()?;
+        let mentioned = assumed.as_deref().map(Mentioned::of).unwrap_or_default();
         let mut sources = alphabet::sources(pair, facts.each_ref(), &mentioned);
         if alphabet::has_tables(pair, facts.each_ref(), &sources.inputs) {
             facts = [0, 1].map(|side: usize| Facts::without_tables(&pair.sides[side].program));
@@ -50,7 +53,10 @@ impl World {
         }
         let facts = facts.each_ref();
         (pair.inputs, pair.kept) = (sources.inputs, sources.kept);
-        let assumptions = args.assume.as_deref().map(|it| Assumptions::read(it, pair)).transpose()?.unwrap_or_default();
+        let assumptions = match (&args.assume, &assumed) {
+            (Some(path), Some(text)) => Assumptions::of(path, text, pair)?,
+            _ => Assumptions::default(),
+        };
         pair.never.clone_from(&assumptions.never);
         let alphabet = Alphabet::of(pair, facts, &assumptions);
         if alphabet.vectors.is_empty() {
