@@ -100,13 +100,13 @@ fn rust(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
 }
 
 fn text(session: &Session, args: &Bench, program: &Program, figures: &Figures) -> String {
-    let Figures { timing: Timing { scans, min, median, p99 }, text, compile } = figures;
+    let Figures { timing: Timing { scans, min, median, p99, overhead }, text, compile } = figures;
     let state = Layout::new(program).machine.size;
     let milliseconds = (session.compile_time + *compile).as_secs_f64() * 1e3;
     if session.common.format() == MessageFormat::Json {
         return format!(
             "{{\"reason\":\"bench\",\"scans\":{scans},\"ns_min\":{min:.2},\"ns_median\":{median:.2},\"ns_p99\":{p99:.2},\
-             \"text_bytes\":{text},\"state_bytes\":{state},\"compile_ms\":{milliseconds:.3}}}\n"
+             \"ns_overhead\":{overhead:.2},\"text_bytes\":{text},\"state_bytes\":{state},\"compile_ms\":{milliseconds:.3}}}\n"
         );
     }
     let names: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
@@ -118,6 +118,7 @@ fn text(session: &Session, args: &Bench, program: &Program, figures: &Figures) -
         ("minimum", format!("{} per scan", nanoseconds(*min))),
         ("median", format!("{} per scan", nanoseconds(*median))),
         ("99th percentile", format!("{} per scan", nanoseconds(*p99))),
+        ("not counted", format!("{} per scan, of an empty program", nanoseconds(*overhead))),
         ("code", format!("{text} bytes")),
         ("state", format!("{state} bytes")),
         ("compiled in", format!("{milliseconds:.1} ms")),

@@ -167,6 +167,7 @@ impl Fault {
     }
 
     /// The fault with this code; `None` for 0, and for what [`code`](Self::code) never gives.
+    #[inline]
     pub fn from_code(code: u64) -> Option<Self> {
         let kind = FaultKind::from_code(code as u8)?;
         let at = Location { file: (code >> 8) as u16, column: (code >> 24) as u16, line: (code >> 40) as u32 };

@@ -5,7 +5,7 @@ use crate::map::{Map, Type, Variable};
 use crate::minor::minor_faults_note;
 use crate::path::Place;
 use crate::run::running;
-use crate::schedule::Schedule;
+use crate::schedule::{Due, Schedule};
 use crate::stimulus::Stimulus;
 use crate::{Error, Machine};
 use staunch_runtime::{Context, Elementary, MinorFaults, Time};
@@ -20,6 +20,8 @@ const LARGEST_BATCH: u64 = 1 << 16;
 /// Measuring goes on for this long unless the number of scans is given.
 const LENGTH: Duration = Duration::from_millis(700);
 const WARM_UP: Duration = Duration::from_millis(100);
+/// Batches of empty scans that are measured.
+const EMPTY_BATCHES: usize = 100;
 
 #[derive(Clone, Debug, Default)]
 pub struct BenchOptions {
@@ -33,7 +35,7 @@ pub struct BenchOptions {
     pub stimulus: Option<PathBuf>,
 }
 
-/// Nanoseconds per scan, of batches of scans.
+/// Nanoseconds per scan, of batches of scans, without what measuring them takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// Scans that were measured.
@@ -41,13 +43,15 @@ pub struct Timing {
     pub min: f64,
     pub median: f64,
     pub p99: f64,
+    /// What a scan of an empty program takes, called in the same way after its inputs are written: it is not in the other figures.
+    pub overhead: f64,
 }
 
-/// One line that people and programs read: `scans=500 ns_min=1.5 ns_median=1.6 ns_p99=2.0`.
+/// One line that people and programs read: `scans=500 ns_min=1.50 ns_median=1.60 ns_p99=2.00 ns_overhead=2.40`.
 impl fmt::Display for Timing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scans, min, median, p99 } = self;
-        write!(f, "scans={scans} ns_min={min:.2} ns_median={median:.2} ns_p99={p99:.2}")
+        let Self { scans, min, median, p99, overhead } = self;
+        write!(f, "scans={scans} ns_min={min:.2} ns_median={median:.2} ns_p99={p99:.2} ns_overhead={overhead:.2}")
     }
 }
 
@@ -61,11 +65,17 @@ impl FromStr for Timing {
         };
         let number = |name| field(name).and_then(|it| it.parse().map_err(drop));
         let scans = field("scans")?.parse().map_err(drop)?;
-        Ok(Self { scans, min: number("ns_min")?, median: number("ns_median")?, p99: number("ns_p99")? })
+        Ok(Self {
+            scans,
+            min: number("ns_min")?,
+            median: number("ns_median")?,
+            p99: number("ns_p99")?,
+            overhead: number("ns_overhead")?,
+        })
     }
 }
 
-/// Times scans alone, on the monotonic clock.
+/// Times scans alone, on the monotonic clock. What the calls themselves take, which is measured with an empty program, is taken off.
 pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Result<Timing, Error> {
     let running = running(map, options.program.as_deref())?;
     machine.init();
@@ -73,35 +83,44 @@ pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Resul
         Some(path) => repeated(&Stimulus::read(path, map, &running)?, machine.state()),
         None => toggled(&bool_inputs(map, &running), machine.state()),
     };
-    machine.prepare(&lists);
-    let schedule = Schedule::new(map, &running, options.cycle);
-    let fresh = vec![true; map.instances.len()];
-    let mut bench = Bench {
-        machine,
-        map,
-        lists: lists.len(),
-        next: 0,
-        schedule,
-        fresh,
-        turns: options.loop_budget.unwrap_or(Context::TURNS),
-        number: 0,
-        now: 0,
-        minor_faults: MinorFaults::default(),
-    };
+    let overhead = overhead(&mut machine.without_code(), map, &running, options, &lists)?;
+    let mut bench = Bench::new(machine, map, &running, options, &lists);
     let batch = bench.warm_up()?;
     let mut samples = Vec::with_capacity(1 << 16);
     let (began, mut scans) = (Instant::now(), 0);
     while options.scans.map_or(began.elapsed() < LENGTH, |wanted| scans < wanted) {
         let count = options.scans.map_or(batch, |wanted| batch.min(wanted - scans));
-        samples.push(bench.batch(count)?.as_nanos() as f64 / count as f64);
+        samples.push(bench.sample(count)?);
         scans += count;
     }
     if let Some(note) = minor_faults_note(bench.minor_faults, map) {
         crate::error::tell(format_args!("{note}"));
     }
+    let at = quantiles(samples, overhead);
+    Ok(Timing { scans, min: at(0.0), median: at(0.5), p99: at(0.99), overhead })
+}
+
+/// What a scan takes of a program that does nothing.
+fn overhead(
+    empty: &mut Compiled,
+    map: &Map,
+    running: &[usize],
+    options: &BenchOptions,
+    lists: &Lists,
+) -> Result<f64, Error> {
+    let mut bench = Bench::new(empty, map, running, options, lists);
+    let batch = bench.warm_up()?;
+    let samples = (0..EMPTY_BATCHES).map(|_| bench.sample(batch)).collect::<Result<Vec<_>, _>>()?;
+    Ok(quantiles(samples, 0.0)(0.5))
+}
+
+/// The value that a part of the samples does not exceed, less what each of them has too much.
+fn quantiles(mut samples: Vec<f64>, overhead: f64) -> impl Fn(f64) -> f64 {
     samples.sort_by(f64::total_cmp);
-    let at = |part: f64| samples.get(((samples.len() as f64 - 1.0).max(0.0) * part) as usize).copied().unwrap_or(0.0);
-    Ok(Timing { scans, min: at(0.0), median: at(0.5), p99: at(0.99) })
+    move |part| {
+        let at = (samples.len() as f64 - 1.0).max(0.0) * part;
+        samples.get(at as usize).map_or(0.0, |it| (it - overhead).max(0.0))
+    }
 }
 
 /// What is written before each scan; the lists repeat.
@@ -163,7 +182,28 @@ struct Bench<'a> {
     minor_faults: MinorFaults,
 }
 
-impl Bench<'_> {
+impl<'a> Bench<'a> {
+    fn new(machine: &'a mut Compiled, map: &'a Map, running: &[usize], options: &BenchOptions, lists: &Lists) -> Self {
+        machine.prepare(lists);
+        Self {
+            machine,
+            map,
+            lists: lists.len(),
+            next: 0,
+            schedule: Schedule::new(map, running, options.cycle),
+            fresh: vec![true; map.instances.len()],
+            turns: options.loop_budget.unwrap_or(Context::TURNS),
+            number: 0,
+            now: 0,
+            minor_faults: MinorFaults::default(),
+        }
+    }
+
+    /// Nanoseconds per scan, of a batch.
+    fn sample(&mut self, count: u64) -> Result<f64, Error> {
+        Ok(self.batch(count)?.as_nanos() as f64 / count as f64)
+    }
+
     /// Finds how many scans make a batch, and goes on until caches and clock rate have settled.
     fn warm_up(&mut self) -> Result<u64, Error> {
         let began = Instant::now();
@@ -181,7 +221,7 @@ impl Bench<'_> {
     fn batch(&mut self, count: u64) -> Result<Duration, Error> {
         let began = Instant::now();
         let end = match self.schedule.only() {
-            Some((instance, period)) => self.only(count, instance, period),
+            Some(program) => self.only(count, program),
             None => self.scheduled(count),
         };
         let took = began.elapsed();
@@ -189,13 +229,13 @@ impl Bench<'_> {
     }
 
     /// Scans of one program: as little as can be is between them.
-    fn only(&mut self, count: u64, instance: usize, period: Time) -> Result<(), Error> {
+    fn only(&mut self, count: u64, program: Due) -> Result<(), Error> {
         for _ in 0..count {
             self.write();
             let now = self.now;
             self.number += 1;
-            self.now += period;
-            self.scan(instance, now)?;
+            self.now += program.period;
+            self.scan(program, now)?;
         }
         Ok(())
     }
@@ -222,10 +262,9 @@ impl Bench<'_> {
     }
 
     #[inline]
-    fn scan(&mut self, instance: usize, now: Time) -> Result<(), Error> {
+    fn scan(&mut self, Due { instance, period }: Due, now: Time) -> Result<(), Error> {
         let first_scan = std::mem::take(&mut self.fresh[instance]);
-        let cx = Context::new(now, first_scan).with_turns(self.turns);
-        let cx = cx.with_cycle(self.schedule.period(instance));
+        let cx = Context::new(now, first_scan).with_turns(self.turns).with_cycle(period);
         let ran = self.machine.scan(instance, &cx);
         let reported = cx.minor_faults();
         if reported.count > 0 {
@@ -269,13 +308,14 @@ mod tests {
         let options = BenchOptions { scans: Some(500), ..BenchOptions::default() };
         let timing = bench(&mut machine(scan), &map(), &options).unwrap();
         assert_eq!(timing.scans, 500);
-        assert!(0.0 < timing.min && timing.min <= timing.median && timing.median <= timing.p99, "{timing:?}");
+        assert!(0.0 <= timing.min && timing.min <= timing.median && timing.median <= timing.p99, "{timing:?}");
+        assert!(timing.overhead > 0.0, "{timing:?}");
     }
 
     #[test]
     fn a_timing_reads_back() {
-        let timing = Timing { scans: 500, min: 1.5, median: 1.75, p99: 2.0 };
-        assert_eq!(timing.to_string(), "scans=500 ns_min=1.50 ns_median=1.75 ns_p99=2.00");
+        let timing = Timing { scans: 500, min: 1.5, median: 1.75, p99: 2.0, overhead: 2.5 };
+        assert_eq!(timing.to_string(), "scans=500 ns_min=1.50 ns_median=1.75 ns_p99=2.00 ns_overhead=2.50");
         assert_eq!(timing.to_string().parse(), Ok(timing));
         assert_eq!("scans=500".parse::<Timing>(), Err(()));
     }

@@ -94,6 +94,24 @@ impl Compiled {
         compiled
     }
 
+    /// A machine of the same state, whose scans do nothing.
+    pub(crate) fn without_code(&self) -> Self {
+        unsafe extern "C" fn init(_: *mut u8) {}
+        unsafe extern "C" fn scan(_: *mut u8, _: *const Context, _: u32) -> u64 {
+            0
+        }
+        Self {
+            memory: self.memory.clone(),
+            size: self.size,
+            instances: self.instances,
+            domain: self.domain.clone(),
+            init,
+            scan,
+            prepared: Vec::new(),
+            number: MACHINES.fetch_add(1, Ordering::Relaxed),
+        }
+    }
+
     /// The state as it is, for [`restore`](Self::restore).
     pub fn snapshot(&self) -> Snapshot {
         Snapshot { owner: self.number, bytes: self.state().into() }

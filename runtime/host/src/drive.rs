@@ -2,7 +2,7 @@
 //! search drives. Times, tasks and restarts are those of [`run`](crate::run()).
 
 use crate::map::Map;
-use crate::schedule::Schedule;
+use crate::schedule::{Due, Schedule};
 use crate::start::{Event, Start};
 use crate::{Compiled, Machine};
 use staunch_runtime::{Context, Fault, Time};
@@ -72,9 +72,8 @@ impl Drive {
     pub fn scan_by(&mut self, mut run: impl FnMut(usize, &Context) -> Result<(), Fault>) -> Result<(), Fault> {
         let now = self.schedule.next();
         self.schedule.advance(now, false);
-        for instance in self.schedule.due() {
-            let cx = Context::new(now, std::mem::take(&mut self.fresh[*instance]));
-            let cx = cx.with_cycle(self.schedule.period(*instance));
+        for Due { instance, period } in self.schedule.due() {
+            let cx = Context::new(now, std::mem::take(&mut self.fresh[*instance])).with_cycle(*period);
             run(*instance, &cx)?;
         }
         Ok(())

@@ -32,7 +32,7 @@ impl Message {
 /// The messages of a program that have been told.
 #[derive(Debug, Default)]
 pub(crate) struct Messages {
-    is_there: bool,
+    pub is_there: bool,
     told: u32,
 }
 

@@ -8,7 +8,7 @@ use crate::minor::{minor_faults_json, minor_faults_note};
 use crate::path::{nearest, same};
 use crate::replace::{Role, keep_apart};
 use crate::retain::{Ending, Pace, Retention};
-use crate::schedule::Schedule;
+use crate::schedule::{Due, Schedule};
 use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
 use crate::trace::{self, Row, Subject, Table, Trace};
@@ -89,7 +89,12 @@ impl Options {
 
     /// A large array has many columns: they are not made for nothing.
     fn shows_values(&self) -> bool {
-        self.trace.is_some() || self.vars.is_some() || (self.table && !self.quiet && !self.json)
+        self.trace.is_some() || self.vars.is_some() || self.has_table()
+    }
+
+    /// The last scans are printed as a table.
+    fn has_table(&self) -> bool {
+        self.table && self.trace.is_none() && !self.quiet && !self.json
     }
 }
 
@@ -205,8 +210,9 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         start: Start::of(map),
         messages: Messages::of(map),
         epoch: 0,
-        out: Output { rows: 0, lost: 0, trace: None, table: Table::new(terminal::width()) },
+        out: Output { rows: 0, lost: 0, trace: None, table: Table::new(&subject, terminal::width()) },
         clock: None,
+        alone: None,
         summary: Summary::default(),
         minor_faults: MinorFaults::default(),
     };
@@ -282,6 +288,8 @@ struct Runner<'a> {
     epoch: Time,
     out: Output,
     clock: Option<Clock>,
+    /// The program that has nothing around its scans.
+    alone: Option<Due>,
     summary: Summary,
     minor_faults: MinorFaults,
 }
@@ -323,6 +331,7 @@ impl Runner<'_> {
         if self.options.scans == Some(0) {
             self.record(subject, 0)?;
         }
+        self.alone = self.alone();
         let mut before = None;
         let mut ran = Ok(());
         while ran.is_ok() && !self.is_done() {
@@ -354,46 +363,71 @@ impl Runner<'_> {
     /// Runs the next scan and returns its time; `None` when the user has asked for an end.
     fn scan(&mut self, subject: &Subject<'_>, before: Option<Time>) -> Result<Option<Time>, Error> {
         let number = self.summary.scans + 1;
-        let placed = self.stimulus.placed(self.next_row, number, before)?;
-        let mut now = placed.unwrap_or_else(|| self.schedule.next());
-        if let Some(clock) = &mut self.clock {
-            match clock.wait(now) {
-                Some(actual) => now = actual,
-                None => return Ok(None),
-            }
+        if let Some(program) = self.alone {
+            let now = self.schedule.next();
+            self.schedule.step();
+            self.program(program, number, now)?;
+            self.summary.scans = number;
+            return Ok(Some(now));
         }
+        let placed = self.stimulus.placed(self.next_row, number, before)?;
+        let Some(now) = self.wait(placed.unwrap_or_else(|| self.schedule.next())) else { return Ok(None) };
         self.stimulate(number, now)?;
         let began = self.clock.as_ref().map(|_| Instant::now());
-        let mut ran = Ok(());
-        self.schedule.advance(now, placed.is_some());
-        for instance in self.schedule.due() {
-            let first_scan = std::mem::take(&mut self.fresh[*instance]);
-            let turns = self.options.loop_budget.unwrap_or(Context::TURNS);
-            let cx = Context::new(self.epoch.saturating_add(now), first_scan).with_turns(turns);
-            let cx = cx.with_cycle(self.schedule.period(*instance));
-            ran = self.machine.scan(*instance, &cx).map_err(|fault| Error::Fault {
-                fault,
-                scan: number,
-                instance: self.map.instances[*instance].name.clone(),
-                path: self.map.file(fault.at.file).to_owned(),
-            });
-            self.minor_faults = self.minor_faults.and(cx.minor_faults());
-            if ran.is_err() {
-                break;
-            }
-        }
+        let ran = self.programs(number, now, placed.is_some());
         self.tell(number)?;
         ran?;
         if let (Some(clock), Some(began)) = (&mut self.clock, began) {
             clock.figures.add(began.elapsed());
         }
         self.summary.scans = number;
-        let clock = self.saved_clock();
-        if let Some(retention) = &mut self.retention {
-            retention.offer(clock, self.machine.state());
+        if self.retention.is_some() {
+            let clock = self.saved_clock();
+            self.retention.iter_mut().for_each(|it| it.offer(clock, self.machine.state()));
         }
         self.record(subject, now)?;
         Ok(Some(now))
+    }
+
+    /// In real time, when a scan begins that is due at `now`; `None` when the user has asked for an end.
+    fn wait(&mut self, now: Time) -> Option<Time> {
+        self.clock.as_mut().map_or(Some(now), |it| it.wait(now))
+    }
+
+    /// One scan of each program that is due.
+    fn programs(&mut self, number: u64, now: Time, placed: bool) -> Result<(), Error> {
+        self.schedule.advance(now, placed);
+        for at in 0..self.schedule.due().len() {
+            self.program(self.schedule.due()[at], number, now)?;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn program(&mut self, Due { instance, period }: Due, number: u64, now: Time) -> Result<(), Error> {
+        let first_scan = std::mem::take(&mut self.fresh[instance]);
+        let turns = self.options.loop_budget.unwrap_or(Context::TURNS);
+        let cx = Context::new(self.epoch.saturating_add(now), first_scan).with_turns(turns).with_cycle(period);
+        let ran = self.machine.scan(instance, &cx);
+        let minor = cx.minor_faults();
+        if minor.count > 0 {
+            self.minor_faults = self.minor_faults.and(minor);
+        }
+        ran.map_err(|fault| Error::Fault {
+            fault,
+            scan: number,
+            instance: self.map.instances[instance].name.clone(),
+            path: self.map.file(fault.at.file).to_owned(),
+        })
+    }
+
+    /// The only program, where nothing comes before or after its scans: it runs as fast as it can.
+    fn alone(&self) -> Option<Due> {
+        let Options { from, to, trace, .. } = self.options;
+        let is_shown = trace.is_some() || self.options.has_table() || from.is_some() || to.is_some();
+        let is_kept = self.clock.is_some() || self.retention.is_some();
+        let has_input = !self.stimulus.rows.is_empty();
+        self.schedule.only().filter(|_| !is_shown && !is_kept && !has_input && !self.messages.is_there)
     }
 
     /// Says how often the program has divided by zero and continued, and where first.
@@ -500,8 +534,8 @@ impl Runner<'_> {
                 Ok(())
             }
             None => {
-                if self.options.table {
-                    self.out.table.row(subject, row);
+                if self.options.has_table() {
+                    self.out.table.row(row);
                 }
                 Ok(())
             }

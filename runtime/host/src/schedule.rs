@@ -12,14 +12,36 @@ pub(crate) struct Schedule {
     tasks: Vec<Task>,
     /// Scans fall on multiples of it.
     tick: Option<Time>,
-    due: Vec<usize>,
+    /// When the next scan is due.
+    next: Time,
+    due: Vec<Due>,
+}
+
+/// A program that is due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Due {
+    pub instance: usize,
+    /// From one of its scans to the next.
+    pub period: Time,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Task {
-    instance: usize,
-    period: Time,
+    program: Due,
     next: Time,
+}
+
+impl Task {
+    /// The scan after one at `now`, which falls on the period from the last one on, or from `now` if that was `placed`.
+    #[inline]
+    fn step(&mut self, now: Time, placed: bool) {
+        let from = if placed { now } else { self.next };
+        let late = now.saturating_sub(from);
+        let period = self.program.period;
+        // The division costs as much as all the rest, and most scans are not that late.
+        let missed = if late < period { 0 } else { late / period };
+        self.next = from.saturating_add(period.saturating_mul(missed + 1));
+    }
 }
 
 impl Schedule {
@@ -37,40 +59,50 @@ impl Schedule {
         };
         let mut order = running.to_vec();
         order.sort_by_key(|at| (map.instances[*at].priority, *at));
-        let tasks = order.into_iter().map(|instance| Task { instance, period: period(instance), next: 0 });
-        Self { tasks: tasks.collect(), tick, due: Vec::new() }
-    }
-
-    /// The time from one scan of an instance to the next.
-    pub fn period(&self, instance: usize) -> Time {
-        self.tasks.iter().find(|it| it.instance == instance).map_or(0, |it| it.period)
+        let task = |instance| Task { program: Due { instance, period: period(instance) }, next: 0 };
+        Self { tasks: order.into_iter().map(task).collect(), tick, next: 0, due: Vec::with_capacity(running.len()) }
     }
 
     /// When the next scan is due.
     pub fn next(&self) -> Time {
-        let next = self.tasks.iter().map(|it| it.next).min().unwrap_or(0);
-        match self.tick {
-            Some(tick) => next.div_euclid(tick).saturating_add(Time::from(next % tick != 0)).saturating_mul(tick),
-            None => next,
-        }
+        self.next
     }
 
-    /// The instances that run at `now`. At least one does. After a scan that was `placed` at
+    /// The programs that run at `now`. At least one does. After a scan that was `placed` at
     /// `now`, the next follows a period later.
-    pub fn advance(&mut self, now: Time, placed: bool) -> &[usize] {
-        let threshold = self.tasks.iter().map(|it| it.next).min().unwrap_or(0).max(now);
+    pub fn advance(&mut self, now: Time, placed: bool) -> &[Due] {
+        let threshold = self.earliest().max(now);
         self.due.clear();
         for task in self.tasks.iter_mut().filter(|it| it.next <= threshold) {
-            self.due.push(task.instance);
-            let missed = if placed { 0 } else { now.saturating_sub(task.next) / task.period };
-            let from = if placed { now } else { task.next };
-            task.next = from.saturating_add(task.period.saturating_mul(missed + 1));
+            self.due.push(task.program);
+            task.step(now, placed);
         }
+        self.next = self.on_grid(self.earliest());
         &self.due
     }
 
+    /// The [only](Self::only) program's next scan follows a period after this one.
+    #[inline]
+    pub fn step(&mut self) {
+        if let [task] = self.tasks.as_mut_slice() {
+            task.next = task.next.saturating_add(task.program.period);
+            self.next = task.next;
+        }
+    }
+
+    fn earliest(&self) -> Time {
+        self.tasks.iter().map(|it| it.next).min().unwrap_or(0)
+    }
+
+    fn on_grid(&self, time: Time) -> Time {
+        match self.tick {
+            Some(tick) => time.div_euclid(tick).saturating_add(Time::from(time % tick != 0)).saturating_mul(tick),
+            None => time,
+        }
+    }
+
     pub fn shortest_period(&self) -> Time {
-        self.tasks.iter().map(|it| it.period).min().unwrap_or(DEFAULT_CYCLE)
+        self.tasks.iter().map(|it| it.program.period).min().unwrap_or(DEFAULT_CYCLE)
     }
 
     /// For each program, when it is due.
@@ -81,17 +113,18 @@ impl Schedule {
     /// Goes back to what [`times`](Self::times) gave.
     pub fn set_times(&mut self, times: &[Time]) {
         self.tasks.iter_mut().zip(times).for_each(|(task, next)| task.next = *next);
+        self.next = self.on_grid(self.earliest());
     }
 
     /// What [`advance`](Self::advance) returned last.
-    pub fn due(&self) -> &[usize] {
+    pub fn due(&self) -> &[Due] {
         &self.due
     }
 
-    /// The instance and its period, if there is only one.
-    pub fn only(&self) -> Option<(usize, Time)> {
+    /// The program, if there is only one.
+    pub fn only(&self) -> Option<Due> {
         match self.tasks.as_slice() {
-            [task] => Some((task.instance, task.period)),
+            [task] => Some(task.program),
             _ => None,
         }
     }
@@ -115,7 +148,7 @@ mod tests {
         let mut schedule = Schedule::new(&map, &running, cycle);
         let step = |_| {
             let now = schedule.next();
-            (now, schedule.advance(now, false).to_vec())
+            (now, schedule.advance(now, false).iter().map(|it| it.instance).collect())
         };
         (0..count).map(step).collect()
     }
@@ -139,10 +172,11 @@ mod tests {
     #[test]
     fn a_placed_scan_moves_those_after_it() {
         let mut schedule = Schedule::new(&crate::fixture::map(), &[0], Some(10));
-        assert_eq!(schedule.advance(0, false), [0]);
-        assert_eq!(schedule.advance(3, true), [0]);
+        let program = Due { instance: 0, period: 10 };
+        assert_eq!(schedule.advance(0, false), [program]);
+        assert_eq!(schedule.advance(3, true), [program]);
         assert_eq!(schedule.next(), 13);
-        assert_eq!(schedule.advance(45, false), [0]);
+        assert_eq!(schedule.advance(45, false), [program]);
         assert_eq!(schedule.next(), 53);
     }
 }

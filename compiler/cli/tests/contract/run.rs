@@ -217,7 +217,7 @@ fn bench_reports_one_object() {
     let folder = Folder::with("bench", &[("main.st", COUNTER)]);
     let out = folder.staunch("bench main.st --scans 2000 --message-format json").out(0);
     let report: serde_json::Value = serde_json::from_str(out.trim()).unwrap();
-    for key in ["scans", "ns_min", "ns_median", "ns_p99", "text_bytes", "state_bytes", "compile_ms"] {
+    for key in ["scans", "ns_min", "ns_median", "ns_p99", "ns_overhead", "text_bytes", "state_bytes", "compile_ms"] {
         assert!(report[key].is_number(), "{key} in {report}");
     }
 }

@@ -18,6 +18,7 @@
 
 mod compiling;
 mod driver;
+mod executable;
 mod measure;
 mod page;
 mod subject;
@@ -64,4 +65,11 @@ fn the_page_shows_the_tables() {
         page::is_of_tables(),
         "docs/performance.md does not show tests/perf/*.tsv: bless it by the commands in this test's first lines"
     );
+}
+
+#[test]
+fn an_executable_adds_few_instructions_to_a_scan() {
+    if can_measure() {
+        executable::holds();
+    }
 }

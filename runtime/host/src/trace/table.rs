@@ -7,6 +7,7 @@ use crate::map::Type;
 use staunch_runtime::{Elementary, Time};
 use std::collections::VecDeque;
 use std::io::{self, Write};
+use std::ops::Range;
 
 /// Rows that are shown.
 const ROWS: usize = 20;
@@ -19,6 +20,8 @@ pub(crate) struct Table {
     rows: VecDeque<Kept>,
     /// Characters in a line.
     width: usize,
+    /// Where the columns lie in the state, in their order; neighbours are one range.
+    parts: Vec<Range<usize>>,
 }
 
 #[derive(Debug, Default)]
@@ -30,22 +33,24 @@ struct Kept {
 }
 
 impl Table {
-    pub fn new(width: usize) -> Self {
-        Self { rows: VecDeque::new(), width }
+    pub fn new(subject: &Subject<'_>, width: usize) -> Self {
+        let mut parts: Vec<Range<usize>> = Vec::new();
+        for column in most_columns(subject, width) {
+            let (start, size) = (column.place.offset, subject.map.size_of(column.place.ty));
+            match parts.last_mut() {
+                Some(last) if last.end == start => last.end += size,
+                _ => parts.push(start..start + size),
+            }
+        }
+        Self { rows: VecDeque::with_capacity(ROWS), width, parts }
     }
 
-    /// More columns than these never fit.
-    fn columns<'a>(&self, subject: &'a Subject<'_>) -> impl Iterator<Item = &'a Column> {
-        subject.columns.iter().take(self.width / NARROWEST)
-    }
-
-    pub fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) {
+    pub fn row(&mut self, row: Row<'_>) {
         let mut kept = if self.rows.len() < ROWS { Kept::default() } else { self.rows.pop_front().unwrap_or_default() };
         (kept.scan, kept.time) = (row.scan, row.time);
         kept.bytes.clear();
-        for column in self.columns(subject) {
-            let size = subject.map.size_of(column.place.ty);
-            kept.bytes.extend_from_slice(&row.state[column.place.offset..column.place.offset + size]);
+        for part in &self.parts {
+            kept.bytes.extend_from_slice(&row.state[part.clone()]);
         }
         self.rows.push_back(kept);
     }
@@ -58,7 +63,7 @@ impl Table {
         ];
         let mut offset = 0;
         let mut left_out = subject.columns.len();
-        for column in self.columns(subject) {
+        for column in most_columns(subject, self.width) {
             let size = subject.map.size_of(column.place.ty);
             let cell = |kept: &Kept| {
                 let mut cell = String::new();
@@ -81,6 +86,11 @@ impl Table {
             _ => writeln!(out, "{left_out} more variables: --vars picks, --trace - shows all"),
         }
     }
+}
+
+/// More columns than these never fit.
+fn most_columns<'a>(subject: &'a Subject<'_>, width: usize) -> impl Iterator<Item = &'a Column> {
+    subject.columns.iter().take(width / NARROWEST)
 }
 
 /// A column as it is printed.
@@ -147,11 +157,11 @@ mod tests {
             title: String::new(),
             cycle: 10_000_000,
         };
-        let (mut table, mut state) = (Table::new(width), vec![0; 128]);
+        let (mut table, mut state) = (Table::new(&subject, width), vec![0; 128]);
         for scan in 1..=scans {
             state[8] = u8::from(scan % 2 == 0);
             let time = Time::try_from(scan - 1).unwrap() * 10_000_000;
-            table.row(&subject, Row { scan, time, state: &state });
+            table.row(Row { scan, time, state: &state });
         }
         let mut out = Vec::new();
         table.print(&subject, &mut out).unwrap();
