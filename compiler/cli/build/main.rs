@@ -40,7 +40,7 @@ fn pack() -> Result<(), String> {
     println!("cargo::rustc-env=STAUNCH_VERSION={}", version()?);
     let built = out.join("runtime");
     fs::create_dir_all(&built).map_err(|it| it.to_string())?;
-    let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(variable("TARGET")?) };
+    let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(variable("TARGET")?), level: "3" };
     rustc.runtime(&unpacked, &built, true)?;
     for library in [Library::Runtime, Library::Program] {
         strip(&rustc.static_library(library, &built)?);

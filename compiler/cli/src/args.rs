@@ -4,7 +4,7 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use staunch_build::Project;
 use staunch_frontend::Dialect;
-use staunch_host::Moment;
+use staunch_host::{Moment, Overrun};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -134,6 +134,7 @@ pub enum Emit {
     Exe,
     Header,
     Map,
+    Systemd,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -147,6 +148,15 @@ pub enum Backend {
     Native,
     Rust,
     Interpret,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Opt {
+    /// As few instructions in a scan as can be
+    #[default]
+    Speed,
+    /// As few bytes of code
+    Size,
 }
 
 #[derive(Clone, Debug, Args)]
@@ -165,6 +175,9 @@ pub struct Build {
     /// What compiles it
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
+    /// What compiled code is made for; speed without it
+    #[arg(long, value_enum)]
+    pub opt: Option<Opt>,
     /// With `--emit rust`: the variables by name at run time, as a table and a function that reads them
     #[arg(long)]
     pub names: bool,
@@ -220,6 +233,28 @@ pub struct Run {
     /// Sleep, so that scans happen at their time
     #[arg(long)]
     pub realtime: bool,
+    #[command(flatten)]
+    pub pacing: Pacing,
+}
+
+/// How a run in real time keeps its time.
+#[derive(Clone, Debug, Args)]
+pub struct Pacing {
+    /// With --realtime, run before all of a lower priority: SCHED_FIFO, 1 to 98, with all memory locked
+    #[arg(long, value_name = "N", requires = "realtime", value_parser = staunch_host::parse_priority)]
+    pub priority: Option<u8>,
+    /// With --realtime, run on this processor
+    #[arg(long, value_name = "N", requires = "realtime")]
+    pub cpu: Option<usize>,
+    /// With --realtime, what follows a scan that is too long [default: skip]
+    #[arg(long, value_name = "skip|catch-up|fault", requires = "realtime", value_parser = Overrun::parse)]
+    pub overrun: Option<Overrun>,
+    /// With --realtime, end when no scan has ended for so long: 500ms
+    #[arg(long, value_name = "TIME", requires = "realtime", value_parser = staunch_host::parse_duration)]
+    pub watchdog: Option<i64>,
+    /// With --realtime, show a watchdog of the machine that scans end: /dev/watchdog
+    #[arg(long, value_name = "FILE", requires = "realtime")]
+    pub watchdog_device: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, Args)]

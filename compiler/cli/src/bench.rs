@@ -1,6 +1,6 @@
 //! `staunch bench`: the time of a scan, and the size of the code.
 
-use crate::args::{Bench, BuildBackend, MessageFormat};
+use crate::args::{Bench, BuildBackend, MessageFormat, Opt};
 use crate::machine::Native;
 use crate::run::cycle;
 use crate::rustc::{self, Kind};
@@ -76,9 +76,9 @@ fn stop(error: Error) -> Stop {
 /// Builds an executable, which measures itself.
 fn rust(program: &Program, options: &BenchOptions) -> Result<Figures, Stop> {
     let start = Instant::now();
-    let executable = rustc::compile(program, Kind::Executable, None)?;
+    let executable = rustc::compile(program, Kind::Executable, None, Opt::Speed)?;
     let compile = start.elapsed();
-    let object = rustc::compile(program, Kind::Object, None)?;
+    let object = rustc::compile(program, Kind::Object, None, Opt::Speed)?;
     let object = std::fs::read(&object).map_err(|error| format!("{}: {error}", object.display()))?;
     let mut command = Command::new(&executable);
     command.arg("--bench").stdout(Stdio::piped());

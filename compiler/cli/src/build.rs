@@ -1,18 +1,21 @@
 //! `staunch build`: the program in the form that is asked for.
 
-use crate::args::{Build, BuildBackend, Emit};
+use crate::args::{Build, BuildBackend, Emit, Opt};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart, header, link, output};
+use crate::{REJECTED, apart, header, link, output, systemd};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
-use staunch_native::Target;
+use staunch_native::{Aim, Target};
 use staunch_rust::State;
 use std::path::{Path, PathBuf};
 
 pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     if args.names && args.emit != Emit::Rust {
         return Err("`--names` goes with `--emit rust`; `--emit map` says where each variable lies".to_owned());
+    }
+    if args.opt.is_some() && !matches!(args.emit, Emit::Obj | Emit::Lib | Emit::Exe) {
+        return Err("`--opt` is for compiled code: `--emit obj`, `lib` or `exe`".to_owned());
     }
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let out = args.output.clone().unwrap_or_else(|| default_name(session, args));
@@ -34,6 +37,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
             let text = header::header(&runnable(session, args)?, &out, &session.first);
             output::write(&out, text.as_bytes())?;
         }
+        Emit::Systemd => output::write(&out, systemd::unit(&runnable(session, args)?, &out).as_bytes())?,
         Emit::Obj | Emit::Lib | Emit::Exe => compile(&runnable(session, args)?, args, target, &out)?,
     }
     if out != Path::new("-") {
@@ -48,38 +52,42 @@ fn runnable(session: &Session, args: &Build) -> Result<Program, String> {
 }
 
 fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
+    let opt = args.opt.unwrap_or_default();
     match args.backend {
-        BuildBackend::Native => native(program, args.emit, target, out),
+        BuildBackend::Native => native(program, args.emit, target, opt, out),
         BuildBackend::Rust if !program.externals().is_empty() => Err(
             "what is `{external}` is implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
              and implement it in C"
                 .to_owned(),
         ),
-        BuildBackend::Rust => rust(program, args.emit, target, out),
+        BuildBackend::Rust => rust(program, args.emit, target, opt, out),
     }
 }
 
-fn native(program: &Program, emit: Emit, target: Option<&str>, out: &Path) -> Result<(), String> {
+fn native(program: &Program, emit: Emit, target: Option<&str>, opt: Opt, out: &Path) -> Result<(), String> {
     let machine = match target {
         Some(target) => Target::parse(target),
         None => Target::host(),
     };
-    let machine = machine.map_err(|it| it.to_string())?;
+    let machine = machine.map_err(|it| it.to_string())?.aiming_at(match opt {
+        Opt::Speed => Aim::Speed,
+        Opt::Size => Aim::Size,
+    });
     let object = staunch_native::object(program, &machine).map_err(|it| it.to_string())?;
     match emit {
         Emit::Lib => link::static_library(&object, target, out),
         Emit::Exe => link::executable(&object, target, out),
-        Emit::Obj | Emit::Rust | Emit::Header | Emit::Map => output::write(out, &object),
+        Emit::Obj | Emit::Rust | Emit::Header | Emit::Map | Emit::Systemd => output::write(out, &object),
     }
 }
 
-fn rust(program: &Program, emit: Emit, target: Option<&str>, out: &Path) -> Result<(), String> {
+fn rust(program: &Program, emit: Emit, target: Option<&str>, opt: Opt, out: &Path) -> Result<(), String> {
     let kind = match emit {
         Emit::Lib => Kind::StaticLibrary,
         Emit::Exe => Kind::Executable,
-        Emit::Obj | Emit::Rust | Emit::Header | Emit::Map => Kind::Object,
+        Emit::Obj | Emit::Rust | Emit::Header | Emit::Map | Emit::Systemd => Kind::Object,
     };
-    let made = rustc::compile(program, kind, target)?;
+    let made = rustc::compile(program, kind, target, opt)?;
     let bytes = std::fs::read(&made).map_err(|it| format!("{}: {it}", made.display()))?;
     if kind == Kind::Executable { output::executable(out, &bytes) } else { output::write(out, &bytes) }
 }
@@ -105,5 +113,6 @@ fn default_name(session: &Session, args: &Build) -> PathBuf {
         Emit::Exe => stem,
         Emit::Header => format!("{stem}.h"),
         Emit::Map => format!("{stem}.map"),
+        Emit::Systemd => format!("{stem}.service"),
     })
 }

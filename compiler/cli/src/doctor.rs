@@ -1,6 +1,6 @@
 //! `staunch doctor`: which targets this machine can build for, and what to type where something is missing.
 
-use crate::args::Doctor;
+use crate::args::{Doctor, Opt};
 use crate::{USAGE, linker, output, rustc};
 use staunch_native::Target;
 use std::fmt::Write as _;
@@ -54,7 +54,7 @@ fn show(text: &mut String, target: &str) -> bool {
 
 fn needs(target: &str, is_host: bool) -> Vec<Need> {
     let foreign = Some(target).filter(|_| !is_host);
-    let compiler = rustc::find(foreign).err();
+    let compiler = rustc::find(foreign, Opt::Speed).err();
     let linker = linker::find(foreign).err();
     let has_system = !target.contains("-none");
     let mut needs = Vec::new();

@@ -1,5 +1,6 @@
 //! Executables and libraries from native objects: what is missing is only a linker.
 
+use crate::args::Opt;
 use crate::toolchain::{Library, run};
 use crate::{archive, linker, output, rustc, scratch};
 use std::fs;
@@ -48,7 +49,7 @@ fn read(path: &Path) -> Result<Vec<u8>, String> {
 /// The carried library for the host, else one that rustc makes.
 fn runtime_library(target: Option<&str>, library: Library) -> Result<Vec<u8>, String> {
     if let Some(target) = target.filter(|it| !linker::is_host(it)) {
-        let rustc = rustc::find(Some(target))?;
+        let rustc = rustc::find(Some(target), Opt::Speed)?;
         let path = rustc::runtime(&rustc)?.join(library.file());
         return if path.is_file() { read(&path) } else { Err(linker::no_system(target)) };
     }

@@ -31,6 +31,7 @@ mod new;
 mod output;
 mod prototype;
 mod scratch;
+mod systemd;
 
 use args::{Cli, Command, Emit, MessageFormat};
 use session::Session;

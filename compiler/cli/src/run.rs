@@ -1,12 +1,14 @@
 //! `staunch run`: in this process, or, for the Rust back end, as an executable of its own.
 
-use crate::args::{Backend, MessageFormat, Run};
+use crate::args::{self, Backend, MessageFormat, Opt, Run};
 use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use crate::{REJECTED, apart};
-use staunch_host::{Machine, Map, Moment, Options};
+use staunch_host::{Machine, Map, Moment, Options, Overrun, Pacing};
 use staunch_ir::Program;
+use std::ffi::OsString;
+use std::path::PathBuf;
 use std::process::Command;
 
 pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
@@ -60,6 +62,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         retain: args.retain.clone(),
         retain_within: args.retain_within,
         realtime: args.realtime,
+        pacing: pacing(&args.pacing),
         table: true,
         quiet: session.common.quiet,
     })
@@ -67,7 +70,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
 
 /// Builds an executable in the cache and runs it with the same arguments.
 fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, String> {
-    let executable = rustc::compile(program, Kind::Executable, None)?;
+    let executable = rustc::compile(program, Kind::Executable, None, Opt::Speed)?;
     let mut command = Command::new(&executable);
     command.arg("--table");
     let texts = [
@@ -89,12 +92,30 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
         path.as_ref().map(|it| command.arg(flag).arg(it));
     }
     if args.realtime {
-        command.arg("--realtime");
+        command.arg("--realtime").args(pacing_arguments(&args.pacing));
     }
     if session.common.quiet {
         command.arg("--quiet");
     }
     become_process(command).map_err(|error| format!("cannot run {}: {error}", executable.display()))
+}
+
+fn pacing(args: &args::Pacing) -> Pacing {
+    let args::Pacing { priority, cpu, overrun, watchdog, watchdog_device } = args;
+    let (overrun, watchdog_device) = (overrun.unwrap_or_default(), watchdog_device.clone());
+    Pacing { priority: *priority, cpu: *cpu, overrun, watchdog: *watchdog, watchdog_device }
+}
+
+fn pacing_arguments(args: &args::Pacing) -> Vec<OsString> {
+    let overrun = args.overrun.and_then(|wanted| Overrun::ALL.into_iter().find(|it| it.1 == wanted));
+    let texts = [
+        ("--priority", args.priority.map(|it| it.to_string().into())),
+        ("--cpu", args.cpu.map(|it| it.to_string().into())),
+        ("--overrun", overrun.map(|it| it.0.into())),
+        ("--watchdog", args.watchdog.map(|it| format!("{it}ns").into())),
+        ("--watchdog-device", args.watchdog_device.clone().map(PathBuf::into_os_string)),
+    ];
+    texts.into_iter().flat_map(|(flag, value)| value.map(|it| [flag.into(), it])).flatten().collect()
 }
 
 fn within(time: i64) -> String {

@@ -1,6 +1,7 @@
 //! `--backend rust`: the emitted Rust, compiled offline with the user's rustc and the runtime's
 //! source that the command carries.
 
+use crate::args::Opt;
 use crate::cache;
 use crate::linker;
 use crate::toolchain::{Library, Rustc, WHOLE, link_args, run};
@@ -23,9 +24,13 @@ pub enum Kind {
 }
 
 /// `$RUSTC` or `rustc`, after making sure that it can compile for `target`.
-pub fn find(target: Option<&str>) -> Result<Rustc, String> {
+pub fn find(target: Option<&str>, opt: Opt) -> Result<Rustc, String> {
     let program = std::env::var_os("RUSTC").filter(|it| !it.is_empty()).unwrap_or_else(|| OsString::from("rustc"));
-    let rustc = Rustc { program, target: target.filter(|it| !linker::is_host(it)).map(str::to_owned) };
+    let level = match opt {
+        Opt::Speed => "3",
+        Opt::Size => "z",
+    };
+    let rustc = Rustc { program, target: target.filter(|it| !linker::is_host(it)).map(str::to_owned), level };
     version(&rustc)?;
     if let Some(target) = &rustc.target {
         let output = Command::new(&rustc.program).args(["--print", "target-libdir", "--target", target]).output();
@@ -60,7 +65,7 @@ fn has_std(rustc: &Rustc) -> bool {
 pub fn runtime(rustc: &Rustc) -> Result<PathBuf, String> {
     let version = version(rustc)?;
     let target = linker::describe(rustc);
-    let key = cache::key("runtime", &[SOURCES, RECIPES[0], &version, target.as_bytes()]);
+    let key = cache::key("runtime", &[SOURCES, RECIPES[0], &version, target.as_bytes(), rustc.level.as_bytes()]);
     cache::entry(&key, |folder| {
         let sources = folder.join("sources");
         unpack(&sources)?;
@@ -123,8 +128,8 @@ fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
 ";
 
 /// Compiles a program with rustc and returns the file it made, in the cache.
-pub fn compile(program: &Program, kind: Kind, target: Option<&str>) -> Result<PathBuf, String> {
-    let rustc = find(target)?;
+pub fn compile(program: &Program, kind: Kind, target: Option<&str>, opt: Opt) -> Result<PathBuf, String> {
+    let rustc = find(target, opt)?;
     if kind == Kind::Executable && !has_std(&rustc) {
         return Err(linker::no_system(&linker::describe(&rustc)));
     }
@@ -134,7 +139,7 @@ pub fn compile(program: &Program, kind: Kind, target: Option<&str>) -> Result<Pa
     };
     let runtime = runtime(&rustc)?;
     let text = crate_text(program, kind);
-    // The runtime's folder is named after its source, the compiler and the target.
+    // The runtime's folder is named after its source, the compiler, the target and how it is compiled.
     let runtime_key = runtime.as_os_str().as_encoded_bytes();
     let key = cache::key("program", &[RECIPES[1], text.as_bytes(), runtime_key, format!("{kind:?}").as_bytes()]);
     let folder = cache::entry(&key, |folder| {

@@ -83,12 +83,15 @@ pub struct Rustc {
     pub program: OsString,
     /// `None` for the host.
     pub target: Option<String>,
+    /// `-Copt-level`: 3, or `z` for small code.
+    pub level: &'static str,
 }
 
 impl Rustc {
     pub fn command(&self) -> Command {
         let mut command = Command::new(&self.program);
-        command.args(["-Copt-level=3", "-Cpanic=abort", "-Cdebuginfo=0", "--cap-lints=allow"]);
+        command.arg(format!("-Copt-level={}", self.level));
+        command.args(["-Cpanic=abort", "-Cdebuginfo=0", "--cap-lints=allow"]);
         if let Some(target) = &self.target {
             command.args(["--target", target]);
         }
@@ -114,7 +117,7 @@ impl Rustc {
             .args(["--crate-name", &crate_name(recipe.package)])
             .args(recipe.flags)
             .env("CFG_CARGO_FEATURES", "[]")
-            .env("CFG_OPT_LEVEL", "3")
+            .env("CFG_OPT_LEVEL", self.level)
             .env("CFG_TARGET_FEATURES", "[]")
             .env("CARGO_PKG_VERSION", env!("CARGO_PKG_VERSION"))
             .arg("-o")

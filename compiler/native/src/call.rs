@@ -109,7 +109,7 @@ impl Function<'_, '_> {
         let info = block_info(block);
         let address = self.address(block);
         let values: Vec<_> = inputs.iter().map(|input| self.scalar(input)).collect();
-        if let Some(emit) = inline_block::find(block, instruction) {
+        if let Some(emit) = inline_block::find(block, instruction, self.module.aim) {
             return emit(self, info, address, &values);
         }
         let instruction = &info.instructions[instruction];

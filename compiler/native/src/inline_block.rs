@@ -6,6 +6,7 @@ use crate::address::Address;
 use crate::function::Function;
 use crate::inline_timer::{tof, ton, tp};
 use crate::members::Members;
+use crate::target::Aim;
 use cranelift_codegen::ir::condcodes::IntCC;
 use cranelift_codegen::ir::{InstBuilder, Type, Value as Clif, types};
 use staunch_ir::{Place, Repr};
@@ -75,7 +76,10 @@ const INLINE: &[(&str, Emit)] = &[
 ];
 
 /// What emits an instruction of the block at `place`.
-pub(crate) fn find(place: &Place, instruction: usize) -> Option<Emit> {
+pub(crate) fn find(place: &Place, instruction: usize, aim: Aim) -> Option<Emit> {
+    if aim == Aim::Size {
+        return None;
+    }
     let symbol = block_info(place).instructions[instruction].symbol;
     INLINE.iter().find(|(known, _)| *known == symbol).map(|(_, emit)| *emit)
 }

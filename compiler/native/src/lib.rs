@@ -64,4 +64,4 @@ pub use error::Error;
 pub use jit::{Init, Jit, Scan};
 pub use listing::{clif, frames};
 pub use object::object;
-pub use target::Target;
+pub use target::{Aim, Target};

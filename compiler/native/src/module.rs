@@ -2,6 +2,7 @@
 
 use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
+use crate::target::Aim;
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
@@ -46,6 +47,7 @@ pub(crate) struct ModuleEmitter<'p> {
     /// The body of the PROGRAM that runs alone: its function is `staunch_scan`.
     scanned: Option<RoutineId>,
     pub(crate) output: &'p mut dyn Module,
+    pub(crate) aim: Aim,
     functions: Vec<FuncId>,
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
@@ -79,6 +81,7 @@ impl<'p> ModuleEmitter<'p> {
     ) -> Self {
         Self {
             program,
+            aim: Aim::of(output.isa()),
             layout: Layout::new(program),
             handles_faults: program.handles_faults(),
             scanned,
@@ -221,7 +224,9 @@ impl<'p> ModuleEmitter<'p> {
         let inliner = self.small.inliner(&mut context.func);
         let inlined = context.inline(inliner);
         inlined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })?;
-        self.small.note(id, &context.func);
+        if self.aim == Aim::Speed {
+            self.small.note(id, &context.func);
+        }
         let defined = if context.func.dfg.num_insts() > LARGE {
             self.define_plainly(context, id)
         } else {

@@ -2,6 +2,7 @@
 
 use crate::entry::EntryPoints;
 use crate::module::{ModuleEmitter, Workspace};
+use crate::target::Aim;
 use crate::{Error, entry, function, inline_block, inline_op, scan};
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::Module;
@@ -13,13 +14,16 @@ use staunch_ir::{Expr, ExprKind, Program, RoutineId, Statement, StatementKind, T
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
     block_takes_context: |block, instruction| {
-        let is_called = inline_block::find(block, instruction).is_none();
+        let is_called = inline_block::find(block, instruction, Aim::Speed).is_none();
         is_called || inline_block::block_info(block).instructions[instruction].needs_context
     },
     operation_faults: code_faults,
     drops_checks: true,
     scans_take_all: false,
 };
+
+/// The same, where every block is called.
+const RULES_OF_SIZE: Rules = Rules { block_takes_context: |_, _| true, ..RULES };
 
 /// What is known of a program's code when it is made.
 pub(crate) struct Emitted {
@@ -32,10 +36,16 @@ pub(crate) struct Emitted {
 
 /// Puts a whole program into `output`; a listing is added to where one is wanted.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
-    let gain = Gain { suits: &is_in_line, of_reads: false, of_scalars: true };
+    let aim = Aim::of(output.isa());
+    let rules = match aim {
+        Aim::Speed => &RULES,
+        Aim::Size => &RULES_OF_SIZE,
+    };
+    let suits = |it: &Statement| is_in_line(it, aim);
+    let gain = Gain { suits: &suits, of_reads: false, of_scalars: true };
     let program = &promoted(program, gain);
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
-    let effects = effects(program, &RULES);
+    let effects = effects(program, rules);
     let scanned = scan::scanned(program, &effects);
     let mut module = ModuleEmitter::new(program, effects, scanned, output);
     module.listing = listing;
@@ -51,9 +61,9 @@ pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<S
 
 /// Whether the code for a statement calls nothing of the runtime's, which would find what is in registers in the frame. What a
 /// loop only reads is an operand in memory.
-fn is_in_line(statement: &Statement) -> bool {
+fn is_in_line(statement: &Statement, aim: Aim) -> bool {
     let mut is_called = match &statement.kind {
-        StatementKind::CallBlock { block, instruction, .. } => inline_block::find(block, *instruction).is_none(),
+        StatementKind::CallBlock { block, instruction, .. } => inline_block::find(block, *instruction, aim).is_none(),
         _ => false,
     };
     visit::all_exprs(statement, &mut |it: &Expr| {

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use cranelift_codegen::isa::{self, OwnedTargetIsa, TargetIsa};
-use cranelift_codegen::settings::{self, Configurable, Flags};
+use cranelift_codegen::settings::{self, Configurable, Flags, OptLevel};
 use std::str::FromStr;
 use target_lexicon::{Aarch64Architecture, Architecture, BinaryFormat, Environment, PointerWidth, Triple};
 
@@ -11,6 +11,26 @@ use target_lexicon::{Aarch64Architecture, Architecture, BinaryFormat, Environmen
 pub struct Target {
     triple: Triple,
     machine: Machine,
+    aim: Aim,
+}
+
+/// What code is made for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Aim {
+    /// As few instructions in a scan as can be.
+    #[default]
+    Speed,
+    /// As few bytes of code: blocks and routines are called, and loops stay loops.
+    Size,
+}
+
+impl Aim {
+    pub(crate) fn of(isa: &dyn TargetIsa) -> Self {
+        match isa.flags().opt_level() {
+            OptLevel::SpeedAndSize => Self::Size,
+            OptLevel::None | OptLevel::Speed => Self::Speed,
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +87,13 @@ impl Target {
         if triple.binary_format != BinaryFormat::Elf || triple.environment == Environment::Sgx {
             return Err(unknown(&name));
         }
-        Ok(Self { triple, machine })
+        Ok(Self { triple, machine, aim: Aim::Speed })
+    }
+
+    /// The same machine, with code for that aim.
+    #[must_use]
+    pub fn aiming_at(self, aim: Aim) -> Self {
+        Self { aim, ..self }
     }
 
     /// The triple.
@@ -86,14 +112,14 @@ impl Target {
         for feature in features {
             builder.enable(feature).expect("a feature of the machine");
         }
-        builder.finish(flags("true")).map_err(|error| Error::Output(error.to_string()))
+        builder.finish(flags("true", self.aim)).map_err(|error| Error::Output(error.to_string()))
     }
 }
 
 /// For code that runs here and now, with all that this machine can do.
 pub(crate) fn native_isa() -> Result<OwnedTargetIsa, Error> {
     let builder = cranelift_native::builder().map_err(|error| Error::Target(error.to_owned()))?;
-    builder.finish(flags("false")).map_err(|error| Error::Output(error.to_string()))
+    builder.finish(flags("false", Aim::Speed)).map_err(|error| Error::Output(error.to_string()))
 }
 
 /// The same machine and settings, but without optimisation.
@@ -111,12 +137,16 @@ pub(crate) fn plain_isa(isa: &dyn TargetIsa) -> OwnedTargetIsa {
     builder.finish(Flags::new(flags)).expect(known)
 }
 
-fn flags(is_pic: &str) -> Flags {
+fn flags(is_pic: &str, aim: Aim) -> Flags {
+    let level = match aim {
+        Aim::Speed => "speed",
+        Aim::Size => "speed_and_size",
+    };
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
     let mut flags = settings::builder();
     for (name, value) in [
         ("is_pic", is_pic),
-        ("opt_level", "speed"),
+        ("opt_level", level),
         ("enable_verifier", verifier),
         // An .eh_frame from Cranelift needs absolute relocations, which static PIE refuses.
         ("unwind_info", "false"),

@@ -19,6 +19,7 @@
 
 use crate::control::Running;
 use crate::function::{Flow, Function, LoopFrame};
+use crate::target::Aim;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use staunch_ir::loops::running;
 use staunch_ir::visit::{self, Access};
@@ -48,7 +49,8 @@ pub(crate) struct Unrolling {
 
 impl<'p> Function<'_, 'p> {
     pub(crate) fn unrolling(&mut self, it: &For) -> Option<Unrolling> {
-        let is_plain = it.is_private && matches!(it.taking, Taking::Each) && !it.may_leave_range();
+        let is_wanted = self.module.aim == Aim::Speed;
+        let is_plain = is_wanted && it.is_private && matches!(it.taking, Taking::Each) && !it.may_leave_range();
         let (first, step, count) = values(it).filter(|_| is_plain && !has_loop(it))?;
         let size = turns::size_of(&it.body).max(1);
         let group = group(count, size, reads(it, &self.counters));

@@ -3,6 +3,7 @@
 use crate::bench::BenchOptions;
 use crate::literal;
 use crate::path::nearest;
+use crate::realtime::{Overrun, Pacing};
 use crate::run::{Moment, Options};
 use staunch_runtime::Time;
 use staunch_runtime::literal::duration;
@@ -17,7 +18,7 @@ pub enum Wish {
     Version,
 }
 
-const FLAGS: [(&str, &str, &str); 19] = [
+const FLAGS: [(&str, &str, &str); 24] = [
     ("--program", "NAME", "Run this program only"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time between two scans, as 10ms"),
@@ -31,6 +32,11 @@ const FLAGS: [(&str, &str, &str); 19] = [
     ("--retain", "FILE", "Keep retained variables in a file"),
     ("--retain-within", "TIME|scan", "In real time, how soon a change is on disk; without, 1s"),
     ("--realtime", "", "Wait for the time at which each scan is due"),
+    ("--priority", "N", "In real time, run before others: SCHED_FIFO, 1 to 98, with all memory locked"),
+    ("--cpu", "N", "In real time, run on this processor"),
+    ("--overrun", "skip|catch-up|fault", "In real time, what follows a scan that is too long; skip without"),
+    ("--watchdog", "TIME", "In real time, end when no scan has ended for so long"),
+    ("--watchdog-device", "FILE", "In real time, show a watchdog of the machine that scans end: /dev/watchdog"),
     ("--table", "", "Print the last scans as a table"),
     ("--bench", "", "Measure the time of a scan instead"),
     ("--quiet", "", "Print nothing but errors and the trace"),
@@ -69,6 +75,11 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             "--retain-within" => options.retain_within = Some(parse_within(&utf8(value()?)?)?),
             "--table" => options.table = true,
             "--realtime" => options.realtime = true,
+            "--priority" => options.pacing.priority = Some(parse_priority(&utf8(value()?)?)?),
+            "--cpu" => options.pacing.cpu = Some(parse_cpu(&utf8(value()?)?)?),
+            "--overrun" => options.pacing.overrun = Overrun::parse(&utf8(value()?)?)?,
+            "--watchdog" => options.pacing.watchdog = Some(parse_duration(&utf8(value()?)?)?),
+            "--watchdog-device" => options.pacing.watchdog_device = Some(value()?.into()),
             "--bench" => bench = true,
             "--quiet" | "-q" => options.quiet = true,
             "--version" | "-V" => return Ok(Wish::Version),
@@ -104,6 +115,17 @@ pub fn parse_duration(text: &str) -> Result<Time, String> {
         false => duration(text).ok(),
     };
     time.filter(|it| *it > 0).ok_or_else(|| format!("`{text}` is not a time above zero: write `10ms`"))
+}
+
+/// A priority of SCHED_FIFO that leaves room for a watchdog's.
+pub fn parse_priority(text: &str) -> Result<u8, String> {
+    let highest = Pacing::HIGHEST_PRIORITY;
+    let number = text.parse().ok().filter(|it| (1..=highest).contains(it));
+    number.ok_or_else(|| format!("`{text}` is no priority: they are 1 to {highest}"))
+}
+
+fn parse_cpu(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| format!("`{text}` is not the number of a processor"))
 }
 
 /// How soon a change of retained variables is on disk, in nanoseconds: `500ms`; `scan`, which is 0, for

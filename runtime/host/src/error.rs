@@ -1,10 +1,11 @@
 //! What can go wrong around a program.
 
 use crate::json::quote;
-use staunch_runtime::Fault;
+use staunch_runtime::{Fault, Time};
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 #[derive(Debug)]
 pub enum Error {
@@ -22,6 +23,8 @@ pub enum Error {
     Map { line: usize, text: String },
     /// The program faulted.
     Fault { fault: Fault, scan: u64, instance: String, path: String },
+    /// A scan took longer than its period, where that ends a run in real time. Times in nanoseconds.
+    Overrun { scan: u64, instance: String, took: Time, period: Time },
 }
 
 impl Error {
@@ -45,6 +48,11 @@ impl Error {
                 fault.at.column,
                 quote(instance)
             ),
+            Self::Overrun { scan, instance, took, period } => format!(
+                "{{\"reason\":\"fault\",\"message\":{message},\"kind\":\"overrun\",\"took_ns\":{took},\"period_ns\":{period},\
+                 \"scan\":{scan},\"program\":{}}}",
+                quote(instance)
+            ),
             Self::Usage(_)
             | Self::Stimulus { .. }
             | Self::Retain { .. }
@@ -58,7 +66,7 @@ impl Error {
     pub const fn exit_code(&self) -> u8 {
         match self {
             Self::ClosedPipe => 0,
-            Self::Fault { .. } => 3,
+            Self::Fault { .. } | Self::Overrun { .. } => 3,
             Self::Map { .. } => 101,
             Self::Usage(_) | Self::Stimulus { .. } | Self::Retain { .. } | Self::File { .. } => 2,
         }
@@ -76,12 +84,20 @@ impl fmt::Display for Error {
             Self::File { path, doing, error } => write!(f, "cannot {doing} {}: {error}", path.display()),
             Self::ClosedPipe => f.write_str("the output was closed"),
             Self::Map { line, text } => write!(f, "the program's map, line {line}: {text}"),
+            Self::Overrun { scan, instance, took, period } => {
+                let (took, period) = (rounded(*took), rounded(*period));
+                write!(f, "overrun: a scan took {took} of {period} (scan {scan}, program {instance}, --overrun fault)")
+            }
             Self::Fault { fault, scan, instance, path } => {
                 let (line, column) = (fault.at.line, fault.at.column);
                 write!(f, "{path}:{line}:{column}: fault: {} (scan {scan}, program {instance})", fault.kind)
             }
         }
     }
+}
+
+fn rounded(time: Time) -> String {
+    crate::run::rounded(Duration::from_nanos(u64::try_from(time).unwrap_or(0)))
 }
 
 impl std::error::Error for Error {}

@@ -29,6 +29,7 @@ mod trace;
 
 mod bench;
 mod drive;
+mod realtime;
 mod run;
 
 mod args;
@@ -42,7 +43,7 @@ mod allocations;
 #[cfg(test)]
 mod fixture;
 
-pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_within};
+pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot};
 pub use csv::cells as csv_cells;
@@ -56,8 +57,9 @@ pub use literal::parse as bytes_of;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use minor::{minor_faults_json, minor_faults_note};
 pub use path::{Place, resolve as place_of};
+pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};
-pub use run::{Moment, Options, RealTime, Summary, run};
+pub use run::{Moment, Options, Summary, run};
 pub use start::Event;
 pub use value::{format_character, format_time, format_time_as, value_at};
 

@@ -1,179 +1,32 @@
 //! A run: scan after scan, with what goes in and what comes out.
 
+mod options;
+mod summary;
+
+pub use options::{Moment, Options};
+pub use summary::Summary;
+pub(crate) use summary::rounded;
+
 use crate::column::{columns, overlays};
-use crate::json::quote;
 use crate::map::Map;
 use crate::messages::Messages;
 use crate::minor::{minor_faults_json, minor_faults_note};
 use crate::path::{nearest, same};
-use crate::replace::{Role, keep_apart};
+use crate::realtime::{RealTime, Scanned};
 use crate::retain::{Ending, Pace, Retention};
 use crate::schedule::{Due, Schedule};
 use crate::start::{Event, Start};
 use crate::stimulus::{Stimulus, Write};
 use crate::trace::{self, Row, Subject, Table, Trace};
-use crate::{Error, Machine, format_time, signal, terminal};
+use crate::{Error, Machine, terminal};
 use staunch_runtime::{Context, MinorFaults, Time};
 use std::io::{self, Write as _};
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Scans of a run that nothing else ends.
 const DEFAULT_SCANS: u64 = 100;
 /// The priority of a program without a TASK.
 const LOWEST_PRIORITY: u32 = 65535;
-
-/// A point of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Moment {
-    Scan(u64),
-    Time(Time),
-}
-
-impl Moment {
-    fn is_after(self, scan: u64, time: Time) -> bool {
-        match self {
-            Self::Scan(it) => it > scan,
-            Self::Time(it) => it > time,
-        }
-    }
-
-    fn is_before(self, scan: u64, time: Time) -> bool {
-        match self {
-            Self::Scan(it) => it < scan,
-            Self::Time(it) => it < time,
-        }
-    }
-}
-
-/// What to run and how. The default is 100 scans.
-#[derive(Clone, Debug, Default)]
-pub struct Options {
-    /// An instance or a PROGRAM by name; all of them if the source has a CONFIGURATION.
-    pub program: Option<String>,
-    /// `None`: to [`to`](Self::to), else to the last row of the stimulus, or 100; in real time without a
-    /// stimulus, for ever.
-    pub scans: Option<u64>,
-    /// Nanoseconds between two scans, above zero; 10 ms, or the TASKs' intervals.
-    pub cycle: Option<Time>,
-    /// Turns that the loops of one scan may take together; [`Context::TURNS`].
-    pub loop_budget: Option<u64>,
-    pub stimulus: Option<PathBuf>,
-    /// CSV, VCD, SVG or HTML by its ending; `-` is standard output.
-    pub trace: Option<PathBuf>,
-    /// The first and the last scan of the trace or table.
-    pub from: Option<Moment>,
-    pub to: Option<Moment>,
-    /// Variables to trace, separated by commas.
-    pub vars: Option<String>,
-    /// Numbers that a picture shows in one lane, each time two or three names separated by commas.
-    pub overlay: Vec<String>,
-    /// A file that keeps retained variables from run to run.
-    pub retain: Option<PathBuf>,
-    /// In real time, how soon a change of retained variables is on disk, in nanoseconds; 0 is after every
-    /// scan. [`RETAIN_WITHIN`](Self::RETAIN_WITHIN) without.
-    pub retain_within: Option<Time>,
-    /// Waits for the time at which each scan is due.
-    pub realtime: bool,
-    /// Prints nothing but errors and the trace.
-    pub quiet: bool,
-    /// Prints the last scans as a table, if there is no trace.
-    pub table: bool,
-    /// Prints what the run came to as JSON, in place of the table.
-    pub json: bool,
-}
-
-impl Options {
-    /// How soon a change of retained variables is on disk where nothing else is asked for: a second.
-    pub const RETAIN_WITHIN: Time = 1_000_000_000;
-
-    /// A large array has many columns: they are not made for nothing.
-    fn shows_values(&self) -> bool {
-        self.trace.is_some() || self.vars.is_some() || self.has_table()
-    }
-
-    /// The last scans are printed as a table.
-    fn has_table(&self) -> bool {
-        self.table && self.trace.is_none() && !self.quiet && !self.json
-    }
-}
-
-impl Options {
-    /// No file is read and written, or written twice.
-    fn keep_apart(&self) -> Result<(), String> {
-        // What runs is not a file to write either.
-        let own = std::env::current_exe().ok();
-        let own = own.iter().map(|it| ("the executable", it.as_path()));
-        let inputs: Vec<Role<'_>> = self.stimulus.iter().map(|it| ("--stimulus", it.as_path())).chain(own).collect();
-        let outputs = [("--retain", &self.retain), ("--trace", &self.trace)];
-        let outputs: Vec<Role<'_>> =
-            outputs.iter().filter_map(|(what, path)| Some((*what, path.as_deref()?))).collect();
-        keep_apart(&inputs, &outputs)
-    }
-
-    /// Says on standard error what went wrong; with `json`, as an object where all objects go.
-    pub fn report(&self, error: &Error) {
-        match error {
-            Error::ClosedPipe => {}
-            error if self.json => drop(self.print_json(&error.json())),
-            error => crate::error::tell(format_args!("error: {error}")),
-        }
-    }
-
-    /// On standard output, but for a trace that is there.
-    fn print_json(&self, object: &str) -> Result<(), Error> {
-        let line = format!("{object}\n");
-        let written = match self.trace.as_deref().is_some_and(|it| it.as_os_str() == "-") {
-            true => io::stderr().write_all(line.as_bytes()),
-            false => io::stdout().write_all(line.as_bytes()).and_then(|()| io::stdout().flush()),
-        };
-        written.map_err(|error| Error::file("standard output".as_ref(), "write", error))
-    }
-}
-
-impl Summary {
-    /// Times in nanoseconds.
-    fn json(&self, title: &str, lost: u64) -> String {
-        let Self { scans, time, elapsed, real } = self;
-        let mut text = format!(
-            "{{\"reason\":\"run\",\"program\":{},\"scans\":{scans},\"time_ns\":{time},\"elapsed_ns\":{}",
-            quote(title),
-            elapsed.as_nanos()
-        );
-        if let Some(RealTime { overruns, shortest, longest, .. }) = real {
-            // Where nothing ran there is no shortest scan.
-            let shortest = if *shortest == Duration::MAX { 0 } else { shortest.as_nanos() };
-            let longest = longest.as_nanos();
-            text += &format!(",\"overruns\":{overruns},\"shortest_ns\":{shortest},\"longest_ns\":{longest}");
-        }
-        if lost > 0 {
-            text += &format!(",\"rows_lost\":{lost}");
-        }
-        text + "}"
-    }
-}
-
-/// What a run came to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Summary {
-    pub scans: u64,
-    /// On the clock of the program, in nanoseconds, to the end of the last cycle.
-    pub time: Time,
-    /// How long the run took.
-    pub elapsed: Duration,
-    /// Of a run in real time.
-    pub real: Option<RealTime>,
-}
-
-/// How well a run kept the real time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RealTime {
-    /// Scans that began late because the one before took too long.
-    pub overruns: u64,
-    pub shortest: Duration,
-    pub longest: Duration,
-    pub total: Duration,
-}
 
 /// Runs a program from its initial state: what `staunch run` does.
 ///
@@ -182,6 +35,10 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     let running = running(map, options.program.as_deref())?;
     if options.cycle.is_some_and(|it| it <= 0) {
         return Err(Error::Usage("the cycle is a time above zero".to_owned()));
+    }
+    if options.pacing.is_asked_for() && !options.realtime {
+        let text = "--priority, --cpu, --overrun and --watchdog are for a run in real time: add --realtime";
+        return Err(Error::Usage(text.to_owned()));
     }
     options.trace.as_deref().map_or(Ok(()), trace::check_name)?;
     options.keep_apart().map_err(Error::Usage)?;
@@ -211,7 +68,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         messages: Messages::of(map),
         epoch: 0,
         out: Output { rows: 0, lost: 0, trace: None, table: Table::new(&subject, terminal::width()) },
-        clock: None,
+        real: None,
         alone: None,
         summary: Summary::default(),
         minor_faults: MinorFaults::default(),
@@ -287,7 +144,7 @@ struct Runner<'a> {
     /// The program's clock at this run's time 0: a retained timer goes on where it stood.
     epoch: Time,
     out: Output,
-    clock: Option<Clock>,
+    real: Option<RealTime>,
     /// The program that has nothing around its scans.
     alone: Option<Due>,
     summary: Summary,
@@ -320,13 +177,13 @@ impl Runner<'_> {
     fn scans(&mut self, subject: &Subject<'_>) -> Result<(), Error> {
         let began = Instant::now();
         if self.options.realtime {
-            signal::listen();
             if let Some(retention) = &mut self.retention {
                 let within = self.options.retain_within.unwrap_or(Options::RETAIN_WITHIN);
                 let pace = Pace::within(Duration::from_nanos(u64::try_from(within).unwrap_or(0)));
                 retention.save_always(pace)?;
             }
-            self.clock = Some(Clock::start());
+            let line = if self.options.json { summary::figures_json } else { summary::figures_text };
+            self.real = Some(RealTime::start(self.map, &self.schedule, &self.options.pacing, line)?);
         }
         if self.options.scans == Some(0) {
             self.record(subject, 0)?;
@@ -343,7 +200,7 @@ impl Runner<'_> {
         }
         self.summary.elapsed = began.elapsed();
         self.summary.time = if self.summary.scans == 0 { 0 } else { self.schedule.next() };
-        self.summary.real = self.clock.as_ref().map(|it| it.figures);
+        self.summary.real = self.real.take().map(RealTime::end);
         ran
     }
 
@@ -371,27 +228,59 @@ impl Runner<'_> {
             return Ok(Some(now));
         }
         let placed = self.stimulus.placed(self.next_row, number, before)?;
-        let Some(now) = self.wait(placed.unwrap_or_else(|| self.schedule.next())) else { return Ok(None) };
+        let due = placed.unwrap_or_else(|| self.schedule.next());
+        if self.real.is_some() {
+            return self.real_scan(subject, number, due, placed.is_some());
+        }
+        self.stimulate(number, due)?;
+        let ran = self.programs(number, due, placed.is_some());
+        self.after(subject, number, due, ran)?;
+        Ok(Some(due))
+    }
+
+    /// In real time, one program runs at a time: its scan sees when it really begins.
+    fn real_scan(
+        &mut self,
+        subject: &Subject<'_>,
+        number: u64,
+        due: Time,
+        placed: bool,
+    ) -> Result<Option<Time>, Error> {
+        let Some(real) = &self.real else { return Ok(None) };
+        let Some(now) = real.wait(due) else { return Ok(None) };
+        let Some(turn) = self.schedule.pick(now, placed, real.catches_up()) else { return Ok(None) };
         self.stimulate(number, now)?;
-        let began = self.clock.as_ref().map(|_| Instant::now());
-        let ran = self.programs(number, now, placed.is_some());
+        let began = self.now();
+        let ran = self.program(turn.program, number, began);
+        let ended = self.now();
+        let whole = ran.is_ok();
+        self.after(subject, number, began, ran)?;
+        let scanned = self.real.as_mut().filter(|_| whole).map(|it| it.add(&turn, began, ended));
+        match scanned {
+            Some(Scanned { faults: true, took }) => Err(Error::Overrun {
+                scan: number,
+                instance: self.map.instances[turn.program.instance].name.clone(),
+                took,
+                period: turn.program.period,
+            }),
+            _ => Ok(Some(began)),
+        }
+    }
+
+    fn now(&self) -> Time {
+        self.real.as_ref().map_or(0, RealTime::now)
+    }
+
+    /// What comes after a scan: messages, also those before a fault, retained variables, the trace.
+    fn after(&mut self, subject: &Subject<'_>, number: u64, now: Time, ran: Result<(), Error>) -> Result<(), Error> {
         self.tell(number)?;
         ran?;
-        if let (Some(clock), Some(began)) = (&mut self.clock, began) {
-            clock.figures.add(began.elapsed());
-        }
         self.summary.scans = number;
         if self.retention.is_some() {
             let clock = self.saved_clock();
             self.retention.iter_mut().for_each(|it| it.offer(clock, self.machine.state()));
         }
-        self.record(subject, now)?;
-        Ok(Some(now))
-    }
-
-    /// In real time, when a scan begins that is due at `now`; `None` when the user has asked for an end.
-    fn wait(&mut self, now: Time) -> Option<Time> {
-        self.clock.as_mut().map_or(Some(now), |it| it.wait(now))
+        self.record(subject, now)
     }
 
     /// One scan of each program that is due.
@@ -425,7 +314,7 @@ impl Runner<'_> {
     fn alone(&self) -> Option<Due> {
         let Options { from, to, trace, .. } = self.options;
         let is_shown = trace.is_some() || self.options.has_table() || from.is_some() || to.is_some();
-        let is_kept = self.clock.is_some() || self.retention.is_some();
+        let is_kept = self.real.is_some() || self.retention.is_some();
         let has_input = !self.stimulus.rows.is_empty();
         self.schedule.only().filter(|_| !is_shown && !is_kept && !has_input && !self.messages.is_there)
     }
@@ -545,7 +434,7 @@ impl Runner<'_> {
     fn finish(&mut self, subject: &Subject<'_>, ran: &Result<(), Error>) -> Result<(), Error> {
         let text = ran.as_ref().err().map(Error::to_string);
         let ending = match (ran, &text) {
-            (Err(Error::Fault { .. }), Some(text)) => Ending::Fault(text),
+            (Err(Error::Fault { .. } | Error::Overrun { .. }), Some(text)) => Ending::Fault(text),
             (Err(_), _) => Ending::Early,
             (Ok(()), _) => Ending::Well,
         };
@@ -568,109 +457,12 @@ impl Runner<'_> {
             None if self.options.quiet || self.options.json || self.options.trace.is_some() => Ok(()),
             None => {
                 let mut text = Vec::new();
-                let printed = self.out.table.print(subject, &mut text).and_then(|()| self.totals(subject, &mut text));
+                let printed = self.out.table.print(subject, &mut text);
+                text.extend_from_slice(self.summary.text(&subject.title).as_bytes());
                 let printed = printed.and_then(|()| io::stdout().write_all(&text)).and_then(|()| io::stdout().flush());
                 printed.map_err(|error| Error::file("standard output".as_ref(), "write", error))
             }
         }
-    }
-
-    fn totals(&self, subject: &Subject<'_>, out: &mut dyn io::Write) -> io::Result<()> {
-        let Summary { scans, time, elapsed, real } = self.summary;
-        let plural = if scans == 1 { "" } else { "s" };
-        write!(out, "{scans} scan{plural} of {}, ", subject.title)?;
-        let Some(real) = real else {
-            return writeln!(out, "{} of virtual time, in {}", spoken(time), rounded(elapsed));
-        };
-        let mean = real.total.checked_div(u32::try_from(scans).unwrap_or(u32::MAX)).unwrap_or_default();
-        let (min, mean, max) = (rounded(real.shortest), rounded(mean), rounded(real.longest));
-        let plural = if real.overruns == 1 { "" } else { "s" };
-        write!(
-            out,
-            "{} in real time, {} overrun{plural}; a scan took {min} at least, ",
-            rounded(elapsed),
-            real.overruns
-        )?;
-        writeln!(out, "{mean} on average, {max} at most")
-    }
-}
-
-/// `2 s`, `1 min 30 s`: a time for a sentence.
-fn spoken(time: Time) -> String {
-    let text = format_time(time);
-    let mut out = String::new();
-    let mut digit = true;
-    for character in text.trim_start_matches("T#").chars() {
-        if character.is_ascii_digit() != digit {
-            out.push(' ');
-            digit = !digit;
-        }
-        out.push(character);
-    }
-    let words = out.split(' ').map(|it| if it == "m" { "min" } else { it });
-    words.collect::<Vec<_>>().join(" ")
-}
-
-/// Three digits are enough for people.
-fn rounded(duration: Duration) -> String {
-    let nanoseconds = duration.as_nanos();
-    let (value, unit) = match nanoseconds {
-        0..=999 => return format!("{nanoseconds} ns"),
-        1_000..=999_999 => (nanoseconds as f64 / 1e3, "µs"),
-        1_000_000..=999_999_999 => (nanoseconds as f64 / 1e6, "ms"),
-        _ => (nanoseconds as f64 / 1e9, "s"),
-    };
-    let digits = if value < 10.0 { 2 } else { usize::from(value < 100.0) };
-    format!("{value:.digits$} {unit}")
-}
-
-/// The real time since the start of the run.
-struct Clock {
-    start: Instant,
-    figures: RealTime,
-    has_run: bool,
-}
-
-/// A signal cannot end a sleep, so none is longer than this.
-const NAP: Duration = Duration::from_millis(50);
-
-impl Clock {
-    fn start() -> Self {
-        let figures = RealTime { overruns: 0, shortest: Duration::MAX, longest: Duration::ZERO, total: Duration::ZERO };
-        Self { start: Instant::now(), figures, has_run: false }
-    }
-
-    /// Sleeps until `time`. Returns the time at which the scan begins, later than that after an
-    /// overrun; `None` when the user has asked for an end.
-    fn wait(&mut self, time: Time) -> Option<Time> {
-        let due = self.start + Duration::from_nanos(u64::try_from(time).unwrap_or(0));
-        let mut slept = false;
-        loop {
-            if signal::asked_to_stop() {
-                return None;
-            }
-            let left = due.saturating_duration_since(Instant::now());
-            if left.is_zero() {
-                break;
-            }
-            slept = true;
-            std::thread::sleep(left.min(NAP));
-        }
-        let late = !slept && std::mem::replace(&mut self.has_run, true);
-        self.has_run = true;
-        if !late {
-            return Some(time);
-        }
-        self.figures.overruns += 1;
-        Some(time.max(Time::try_from(self.start.elapsed().as_nanos()).unwrap_or(Time::MAX)))
-    }
-}
-
-impl RealTime {
-    fn add(&mut self, scan: Duration) {
-        self.shortest = self.shortest.min(scan);
-        self.longest = self.longest.max(scan);
-        self.total += scan;
     }
 }
 

@@ -25,6 +25,18 @@ pub(crate) struct Due {
     pub period: Time,
 }
 
+/// A scan of one program, in real time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Turn {
+    pub program: Due,
+    /// When it was due.
+    pub due: Time,
+    /// Scans that are left out before the next one.
+    pub missed: u64,
+    /// When the next one is due that is not left out for want of time so far.
+    pub next: Time,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Task {
     program: Due,
@@ -79,6 +91,26 @@ impl Schedule {
         }
         self.next = self.on_grid(self.earliest());
         &self.due
+    }
+
+    /// The program that runs at `now`, alone: that of the highest priority among those that are due. Its next scan follows on
+    /// its period, or a period later where this one was `placed`; one that `catches_up` leaves none out.
+    pub fn pick(&mut self, now: Time, placed: bool, catches_up: bool) -> Option<Turn> {
+        let threshold = self.earliest().max(now);
+        let at = self.tasks.iter().position(|it| it.next <= threshold)?;
+        let due = if placed { now } else { self.on_grid(self.tasks[at].next) };
+        let task = &mut self.tasks[at];
+        let before = task.next;
+        task.step(if catches_up && !placed { before } else { now }, placed);
+        let (program, next) = (task.program, task.next);
+        let steps = if placed { 1 } else { next.saturating_sub(before) / program.period };
+        self.next = self.on_grid(self.earliest());
+        Some(Turn { program, due, missed: u64::try_from(steps - 1).unwrap_or(0), next })
+    }
+
+    /// The programs, in the order in which they run that are due together.
+    pub fn programs(&self) -> impl Iterator<Item = Due> {
+        self.tasks.iter().map(|it| it.program)
     }
 
     /// The [only](Self::only) program's next scan follows a period after this one.
@@ -167,6 +199,30 @@ mod tests {
         assert_eq!(times(&[(Some(20), 5), (Some(30), 1)], None, 5), expected);
         let on_grid = [(0, vec![1, 0]), (24, vec![0]), (36, vec![1]), (48, vec![0]), (60, vec![1, 0])];
         assert_eq!(times(&[(Some(20), 5), (Some(30), 1)], Some(12), 5), on_grid);
+    }
+
+    /// What runs at a time, and when that was due.
+    fn picked(schedule: &mut Schedule, now: Time, catches_up: bool) -> (usize, Time, u64, Time) {
+        let turn = schedule.pick(now, false, catches_up).unwrap();
+        (turn.program.instance, turn.due, turn.missed, turn.next)
+    }
+
+    #[test]
+    fn the_highest_priority_is_next() {
+        let mut map = crate::fixture::map();
+        let first = map.instances[0].clone();
+        let instance = |interval, priority| Instance { interval: Some(interval), priority, ..first.clone() };
+        map.instances = vec![instance(100, 5), instance(30, 1)];
+        let mut schedule = Schedule::new(&map, &[0, 1], None);
+        assert_eq!(picked(&mut schedule, 0, false), (1, 0, 0, 30));
+        assert_eq!(picked(&mut schedule, 1, false), (0, 0, 0, 100));
+        // A long scan of the other has ended at 75.
+        assert_eq!(picked(&mut schedule, 75, false), (1, 30, 1, 90));
+        assert_eq!(schedule.next(), 90);
+        assert_eq!(picked(&mut schedule, 130, false), (1, 90, 1, 150));
+        assert_eq!(picked(&mut schedule, 131, false), (0, 100, 0, 200));
+        assert_eq!(picked(&mut schedule, 240, true), (1, 150, 0, 180));
+        assert_eq!(picked(&mut schedule, 240, true), (1, 180, 0, 210));
     }
 
     #[test]

@@ -4,8 +4,19 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static ASKED: AtomicBool = AtomicBool::new(false);
+static FIGURES: AtomicBool = AtomicBool::new(false);
 
-/// TRUE once SIGINT or SIGTERM has arrived: the run now ends by itself, however long that takes.
+/// TRUE once after SIGUSR1 has arrived.
+pub(crate) fn asked_for_figures() -> bool {
+    FIGURES.load(Ordering::Relaxed) && FIGURES.swap(false, Ordering::Relaxed)
+}
+
+/// As if SIGUSR1 had arrived.
+pub(crate) fn ask_for_figures_again() {
+    FIGURES.store(true, Ordering::Relaxed);
+}
+
+/// TRUE once SIGINT, SIGTERM or SIGHUP has arrived: the run now ends by itself, however long that takes.
 pub(crate) fn asked_to_stop() -> bool {
     let asked = ASKED.load(Ordering::Relaxed);
     #[cfg(unix)]
@@ -17,12 +28,18 @@ pub(crate) fn asked_to_stop() -> bool {
 
 #[cfg(unix)]
 mod unix {
-    use super::{ASKED, Ordering};
+    use super::{ASKED, FIGURES, Ordering};
 
+    const HANG_UP: i32 = 1;
     const INTERRUPT: i32 = 2;
+    #[cfg(target_os = "linux")]
+    const USER_1: i32 = 10;
+    #[cfg(not(target_os = "linux"))]
+    const USER_1: i32 = 30;
     const ALARM: i32 = 14;
     const TERMINATE: i32 = 15;
     const DEFAULT: usize = 0;
+    const IGNORE: usize = 1;
     /// Seconds that a scan may still take.
     const PATIENCE: u32 = 2;
 
@@ -39,6 +56,10 @@ mod unix {
             signal(number, DEFAULT);
             alarm(PATIENCE);
         }
+    }
+
+    extern "C" fn figures(_: i32) {
+        FIGURES.store(true, Ordering::Relaxed);
     }
 
     /// The scan goes on: the process ends as one that does not listen.
@@ -58,20 +79,25 @@ mod unix {
 
     pub fn ignore_closed_pipes() {
         const PIPE: i32 = 13;
-        const IGNORE: usize = 1;
         // SAFETY: to ignore a signal calls nothing.
         unsafe { signal(PIPE, IGNORE) };
     }
 
     pub fn listen() {
         let handler = stop as extern "C" fn(i32);
-        for number in [INTERRUPT, TERMINATE] {
+        for number in [HANG_UP, INTERRUPT, TERMINATE] {
             // SAFETY: the handler only stores to an atomic and makes calls that POSIX allows there.
+            let before = unsafe { signal(number, handler as usize) };
+            // `nohup` has asked that the terminal's end is no end.
+            if number == HANG_UP && before == IGNORE {
+                // SAFETY: to ignore a signal calls nothing.
+                unsafe { signal(number, IGNORE) };
+            }
+        }
+        for (number, handler) in [(ALARM, give_up as extern "C" fn(i32)), (USER_1, figures)] {
+            // SAFETY: as above.
             unsafe { signal(number, handler as usize) };
         }
-        let handler = give_up as extern "C" fn(i32);
-        // SAFETY: as above.
-        unsafe { signal(ALARM, handler as usize) };
     }
 }
 
@@ -82,7 +108,7 @@ pub(crate) fn ignore_closed_pipes() {
     unix::ignore_closed_pipes();
 }
 
-/// From now on, SIGINT and SIGTERM ask for an end instead of making one.
+/// From now on, SIGINT, SIGTERM and SIGHUP ask for an end instead of making one, and SIGUSR1 asks for figures.
 pub(crate) fn listen() {
     #[cfg(unix)]
     unix::listen();

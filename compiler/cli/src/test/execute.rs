@@ -5,7 +5,7 @@ use super::coverage::Counts;
 use super::fixture::{self, Step};
 use super::outcome::{Case, Outcome, failed};
 use super::suite::{self, Pace, Ran};
-use crate::args::{self, Backend};
+use crate::args::{self, Backend, Opt};
 use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
@@ -60,7 +60,9 @@ impl<'p> Suite<'p> {
         counts: Option<&'p Mutex<Counts>>,
     ) -> Result<Self, String> {
         let executable = match args.backend {
-            Backend::Rust if !program.instances.is_empty() => Some(rustc::compile(program, Kind::Executable, None)?),
+            Backend::Rust if !program.instances.is_empty() => {
+                Some(rustc::compile(program, Kind::Executable, None, Opt::Speed)?)
+            }
             Backend::Rust | Backend::Native | Backend::Interpret => None,
         };
         // A suite does in one scan what a program does in many; interpreted, so many turns would take minutes.

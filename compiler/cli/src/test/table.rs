@@ -153,7 +153,7 @@ fn here(
 }
 
 fn apart(program: &Program, options: &Options) -> Result<Option<String>, String> {
-    let executable = crate::rustc::compile(program, crate::rustc::Kind::Executable, None)?;
+    let executable = crate::rustc::compile(program, crate::rustc::Kind::Executable, None, crate::args::Opt::Speed)?;
     let mut command = Command::new(&executable);
     let paths = [("--stimulus", &options.stimulus), ("--trace", &options.trace)];
     paths.iter().for_each(|(flag, path)| _ = command.arg(flag).args(path.iter()));

@@ -22,6 +22,26 @@ fn every_kind_is_made_where_it_is_asked_for() {
     has(&folder.staunch("build main.st --emit map --names").err(2), &["--emit rust"]);
 }
 
+/// A hundred groups of eight blocks: most of their code is steps of blocks, which are called where size counts.
+#[test]
+fn code_for_size_is_smaller_and_does_the_same() {
+    let source = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/perf/programs/mixed.st"));
+    let folder = Folder::with("sizes", &[("mixed.st", &source.unwrap())]);
+    for backend in ["native", "rust"] {
+        let [speed, size] = ["speed", "size"].map(|opt| {
+            folder.staunch(&format!("build mixed.st --emit obj --backend {backend} --opt {opt} -o made.o -q")).out(0);
+            folder.0.join("made.o").metadata().unwrap().len()
+        });
+        // The table of variables is some 75 kB of both.
+        assert!(size + 50_000 < speed, "{backend}: {size} and {speed} bytes");
+        folder.staunch(&format!("build mixed.st --backend {backend} --opt size -o plant -q")).out(0);
+        let mut plant = Command::new(folder.0.join("plant"));
+        let ran = Ran::of(plant.args(["--scans", "200", "--trace", "-"]).output().unwrap()).out(0);
+        assert_eq!(ran, folder.staunch("run mixed.st --scans 200 --trace - --backend interpret").out(0), "{backend}");
+    }
+    has(&folder.staunch("build mixed.st --emit rust --opt size").err(2), &["`--opt` is for compiled code"]);
+}
+
 #[test]
 fn output_is_the_same_byte_for_byte() {
     let folder = Folder::with("same", &[("main.st", COUNTER)]);

@@ -15,6 +15,8 @@ mod near;
 mod page;
 #[cfg(unix)]
 mod power;
+#[cfg(unix)]
+mod realtime;
 mod retain;
 mod run;
 #[cfg(unix)]

@@ -1,9 +1,11 @@
 //! Runs of a program: stimulus, time, restarts and traces.
 
 use super::*;
+use crate::allocations::allocations;
 use crate::fixture::{Garage, map};
-use staunch_runtime::Value;
+use staunch_runtime::{Fault, Value};
 use std::path::Path;
+use std::path::PathBuf;
 
 /// A folder of its own for each test.
 fn folder(name: &str) -> PathBuf {
@@ -111,7 +113,9 @@ fn real_time_is_waited_for() {
     let options = Options { realtime: true, quiet: true, scans: Some(3), cycle: Some(4_000_000), ..Options::default() };
     let summary = run(&mut Garage::new(), &map(), &options).unwrap();
     assert!(summary.elapsed >= Duration::from_millis(8), "{summary:?}");
-    assert!(summary.real.unwrap().shortest <= summary.real.unwrap().longest);
+    let figures = summary.real.unwrap();
+    assert!(figures.shortest() <= figures.longest());
+    assert_eq!((figures.programs[0].scan.count(), figures.programs[0].jitter.count()), (3, 2));
 }
 
 #[test]
@@ -144,11 +148,47 @@ fn wrong_wishes_are_told() {
     assert!(missing.to_string().starts_with("cannot read no/such.csv: "), "{missing}");
 }
 
+/// A program that changes all of its state in each scan.
+struct Changing([u8; 128]);
+
+impl Machine for Changing {
+    fn state(&self) -> &[u8] {
+        &self.0
+    }
+
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        self.0[offset..offset + bytes.len()].copy_from_slice(bytes);
+    }
+
+    fn init(&mut self) {
+        self.0.fill(0);
+    }
+
+    fn scan(&mut self, _: usize, _: &Context) -> Result<(), Fault> {
+        self.0.iter_mut().for_each(|it| *it = it.wrapping_add(1));
+        Ok(())
+    }
+}
+
+/// Retained variables are saved by a thread of its own, and figures are counted in place.
 #[test]
-fn times_for_people() {
-    assert_eq!(spoken(2_000_000_000), "2 s");
-    assert_eq!(spoken(90_500_000_000), "1 min 30 s 500 ms");
-    assert_eq!(rounded(Duration::from_nanos(950)), "950 ns");
-    assert_eq!(rounded(Duration::from_nanos(1_234_567)), "1.23 ms");
-    assert_eq!(rounded(Duration::from_secs(123)), "123 s");
+#[cfg_attr(miri, ignore = "it runs in real time")]
+fn more_scans_in_real_time_allocate_no_more() {
+    let folder = folder("no-allocation");
+    let allocated = |scans: u64| {
+        let options = Options {
+            realtime: true,
+            quiet: true,
+            scans: Some(scans),
+            cycle: Some(1000),
+            retain: Some(folder.join(scans.to_string())),
+            ..Options::default()
+        };
+        let (map, mut machine, mut ran) = (map(), Changing([0; 128]), None);
+        let count = allocations(|| ran = Some(run(&mut machine, &map, &options)));
+        assert_eq!(ran.unwrap().unwrap().scans, scans);
+        count
+    };
+    let few = allocated(10);
+    assert_eq!(allocated(100_000), few);
 }
