@@ -47,6 +47,9 @@ fn check(session: &Session, inputs: &[Role<'_>], outputs: &[Role<'_>]) -> Result
     all.extend(
         [("the project", session.first.as_path()), ("the project file", &project)].iter().filter(|it| it.1.exists()),
     );
+    if session.sources.files().iter().any(|it| it.path == "<stdin>") {
+        all.push(("the source", Path::new("/dev/stdin")));
+    }
     all.extend(inputs);
     all.extend(tables.iter().map(|it| ("the table", it.as_path())));
     keep_apart(&all, outputs)

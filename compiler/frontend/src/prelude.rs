@@ -45,6 +45,13 @@ impl Unit {
     pub fn is_value(&self) -> bool {
         self.use_ == Use::Value
     }
+
+    /// By whose rules of values it computes: what the standard describes is written by the standard's. A unit test's
+    /// framework is a part of the program that it tests.
+    fn rules(&self, dialect: Dialect) -> Dialect {
+        let is_standard = self.use_ != Use::Open && self.dialects.contains(&Dialect::Iec);
+        if is_standard { Dialect::Iec } else { dialect }
+    }
 }
 
 /// What a unit declares, and so where its name is its own.
@@ -349,11 +356,11 @@ pub(crate) const UNITS: &[Unit] = units! {
     Function "SQR"              "sqr"              [Siemens];
     Function "DEG"              "logix_deg"        [Logix];
     Function "RAD"              "logix_rad"        [Logix];
-    Function "SPLIT_DATE"       "split_date";
-    Function "SPLIT_TOD"        "split_tod";
-    Function "SPLIT_LTOD"       "split_ltod";
-    Function "SPLIT_DT"         "split_dt"         "SPLIT_DATE" "SPLIT_TOD";
-    Function "SPLIT_LDT"        "split_ldt"        "SPLIT_DATE" "SPLIT_LTOD";
+    Function "SPLIT_DATE"       "split_date" [Iec Cscape Codesys Openplc Openplc4 Logix Siemens];
+    Function "SPLIT_TOD"        "split_tod" [Iec Cscape Codesys Openplc Openplc4 Logix Siemens];
+    Function "SPLIT_LTOD"       "split_ltod" [Iec Cscape Codesys Openplc Openplc4 Logix Siemens];
+    Function "SPLIT_DT"         "split_dt"        [Iec Cscape Codesys Openplc Openplc4 Logix Siemens] "SPLIT_DATE" "SPLIT_TOD";
+    Function "SPLIT_LDT"        "split_ldt"       [Iec Cscape Codesys Openplc Openplc4 Logix Siemens] "SPLIT_DATE" "SPLIT_LTOD";
     Function "IS_VALID"         "is_valid";
     Function "IS_VALID_BCD"     "is_valid_bcd";
     Space    "System.Timer"     "system_timer";
@@ -497,7 +504,8 @@ impl Extended {
         let mut sources = sources.clone();
         let taken: Vec<_> = named.iter().filter(|it| it.is_taken).map(|it| it.unit.name).collect();
         for it in &named {
-            let text = format!("{{dialect '{}'}} {}", it.dialect.name(), with_own_names(it.unit.text, &taken));
+            let text =
+                format!("{{dialect '{}'}} {}", it.unit.rules(it.dialect).name(), with_own_names(it.unit.text, &taken));
             sources.add(Source::new(format!("library/{}.st", it.unit.name.to_ascii_lowercase()), text).bundled());
         }
         Some(Self { sources, named })

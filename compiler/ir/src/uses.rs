@@ -36,12 +36,14 @@ pub enum Part {
     /// A comparison of durations with one that is not a whole number of binary fractions of a second, or of two variables;
     /// and a literal with decimals of minutes, hours or days.
     ComparedTimes,
+    /// A timer in scans that are not a whole number of milliseconds apart. No program notes it: that is a matter of its run.
+    PartsOfMillisecond,
     /// A number with a fraction that a REAL does not hold exactly, beside a REAL.
     FractionBesideReal,
 }
 
 impl Part {
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -49,6 +51,7 @@ impl Part {
         Self::Subrange,
         Self::DivisionByZero,
         Self::ComparedTimes,
+        Self::PartsOfMillisecond,
         Self::FractionBesideReal,
     ];
 
@@ -62,6 +65,7 @@ impl Part {
             Self::Subrange => "a value outside of a subrange",
             Self::DivisionByZero => "integer division by 0",
             Self::ComparedTimes => "a comparison of TIMEs",
+            Self::PartsOfMillisecond => "a timer, with scans that are not a whole number of milliseconds apart",
             Self::FractionBesideReal => "a number with a fraction beside a REAL",
         }
     }

@@ -165,15 +165,17 @@ pub fn followed(path: &Path) -> io::Result<PathBuf> {
 }
 
 /// What tells one file from all others, by whatever name it is reached. A file that does not exist yet is its
-/// folder and its name. `None` for devices, which several may read and write, and for standard input and output.
+/// folder and its name. `None` for devices and pipes that the process has open, which several may read and write.
 #[cfg(unix)]
 fn identity(path: &Path) -> Option<(u64, u64, OsString)> {
     use std::os::unix::fs::MetadataExt;
-    if path == Path::new("-") || is_straight(path) {
+    if path == Path::new("-") {
         return None;
     }
     match fs::metadata(path) {
-        Ok(it) if is_device(&it) => None,
+        // Standard input may be a file.
+        Ok(it) if is_device(&it) || is_straight(path) && !it.is_file() => None,
+        Err(_) if is_straight(path) => None,
         Ok(it) => Some((it.dev(), it.ino(), OsString::new())),
         Err(_) => {
             let target = followed(path).ok()?;

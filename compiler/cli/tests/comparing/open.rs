@@ -136,3 +136,43 @@ END_PROGRAM
     let (_, text) = OWN.compare("nothing_open", &exact, &arguments);
     assert!(!text.contains("leave open"), "{text}");
 }
+
+/// Between a system with nanoseconds and one with milliseconds, an input has what both have, and the verdict says so.
+#[test]
+fn inputs_are_times_of_both_systems() {
+    let source = |assigned: &str| {
+        format!("PROGRAM p\nVAR_INPUT a : TIME; END_VAR\nVAR_OUTPUT b : TIME; END_VAR\nb := {assigned};\nEND_PROGRAM\n")
+    };
+    let arguments = ["--from", "iec", "--to", "siemens"];
+    for (name, assigned) in [("greater", "MAX(a, T#1s)"), ("limited", "LIMIT(T#1s, a, T#5s)")] {
+        let (code, text) = OWN.compare(name, &source(assigned), &arguments);
+        assert_eq!(code, Some(4), "{text}");
+        assert!(text.contains("Of `a`, only what both systems have is tried: T#-24d20h31m23s648ms to "), "{text}");
+    }
+    let (code, text) = OWN.compare("tripled", &source("a * 3"), &["--from", "codesys", "--to", "siemens"]);
+    assert_eq!(code, Some(1), "{text}");
+    assert!(!text.contains("us") || !text.contains("ns"), "{text}");
+    let (_, json) =
+        OWN.compare("greater_json", &source("MAX(a, T#1s)"), &[&arguments[..], &["--message-format", "json"]].concat());
+    assert!(json.contains("\"in_common\":[\"Of `a`, only what both"), "{json}");
+}
+
+/// A timer of CODESYS counts whole milliseconds, whatever the scan's time.
+#[test]
+fn timers_in_parts_of_a_millisecond_are_not_called_equal() {
+    let source = "PROGRAM p
+VAR_INPUT a : BOOL; END_VAR
+VAR_OUTPUT q : BOOL; END_VAR
+VAR t : TON; END_VAR
+t(IN := a, PT := T#3ms);
+q := t.ET > T#0ms AND t.ET < T#1ms;
+END_PROGRAM
+";
+    let never = OWN.written("never.txt", "no run\nno restart\nno reset\n");
+    for (name, cycle, code) in [("parts", "700us", 4), ("whole", "2ms", 0)] {
+        let arguments = ["--from", "iec", "--to", "codesys", "--cycle", cycle, "--assume", &never];
+        let (found, text) = OWN.compare(name, source, &arguments);
+        assert_eq!(found, Some(code), "{text}");
+        assert_eq!(text.contains("scans that are not a whole number of milliseconds apart"), code == 4, "{text}");
+    }
+}

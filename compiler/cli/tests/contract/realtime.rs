@@ -137,9 +137,8 @@ fn signals_ask_for_figures_and_for_an_end() {
     while !folder.0.join("kept").exists() {
         std::thread::sleep(Duration::from_millis(5));
     }
-    let signal = |name: &str| {
-        assert!(Command::new("kill").args([name, &child.id().to_string()]).status().unwrap().success());
-    };
+    let process = child.id().to_string();
+    let signal = |name: &str| assert!(Command::new("kill").args([name, &process]).status().unwrap().success());
     signal("-USR1");
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines();
     has(&lines.next().unwrap().unwrap(), &["Main: every 2.00 ms"]);

@@ -153,6 +153,17 @@ fn an_output_does_not_replace_an_input() {
         .current_dir(&folder.0)
         .output();
     has(&Ran::of(ran.unwrap()).err(2), &["would replace --stimulus in.csv"]);
+    // Standard input may be a file as well.
+    for (call, what) in [
+        ("build - --emit map -o main.st < main.st", "the source"),
+        ("build /dev/stdin --emit map -o main.st < main.st", "the source"),
+        ("run main.st --stimulus /dev/stdin --trace in.csv < in.csv", "--stimulus"),
+    ] {
+        let line = format!("{} {call}", env!("CARGO_BIN_EXE_staunch"));
+        let ran = Command::new("sh").args(["-c", &line]).current_dir(&folder.0).output().unwrap();
+        has(&Ran::of(ran).err(2), &[&format!("would replace {what}")]);
+        assert_eq!((folder.read("main.st").as_str(), folder.read("in.csv").as_str()), (files[0].1, files[3].1));
+    }
     // What may be read and written by several.
     folder.staunch("run main.st --scans 1 --stimulus /dev/null --trace /dev/null").err(2);
     folder.staunch("run main.st --scans 1 --retain keep --trace /dev/null").out(0);

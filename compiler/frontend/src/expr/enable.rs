@@ -32,6 +32,15 @@ struct Eno<'a, 's> {
     negated: bool,
 }
 
+/// The parameters of these names that a callee declares, of whatever type.
+#[derive(Clone, Copy, Default)]
+struct Owns {
+    en: bool,
+    eno: bool,
+    /// Its ENO says whether the body has run.
+    tells: bool,
+}
+
 impl<'s> Checker<'_, 's> {
     /// The EN and ENO of a call, and its other arguments; `None` where it has neither, or where they
     /// are the callee's own.
@@ -47,19 +56,19 @@ impl<'s> Checker<'_, 's> {
         self.note_use(Use::Part(Part::Enable), callee.span);
         let owns = self.own_parameters(what, callee);
         let mut enable = Enable { en: None, eno: None, own_eno: None, others: Vec::new() };
-        let tells = !owns.0 && owns.1 && !self.decl.dialect(callee.span).declares_plain_enable();
+        let tells = !owns.en && owns.tells && !self.decl.dialect(callee.span).declares_plain_enable();
         let mut rest = Vec::new();
         for argument in arguments {
             match &argument.kind {
-                ArgumentKind::Input(_, value) if is_en(argument) && !owns.0 && enable.en.is_none() => {
+                ArgumentKind::Input(_, value) if is_en(argument) && !owns.en && enable.en.is_none() => {
                     enable.en = Some(value);
                 }
                 ArgumentKind::Output { target: Some(target), negated, .. }
-                    if is_en(argument) && !owns.1 && enable.eno.is_none() =>
+                    if is_en(argument) && !owns.eno && enable.eno.is_none() =>
                 {
                     enable.eno = Some(Eno { target, negated: *negated });
                 }
-                ArgumentKind::Output { target: None, .. } if is_en(argument) && !owns.1 => {}
+                ArgumentKind::Output { target: None, .. } if is_en(argument) && !owns.eno => {}
                 ArgumentKind::Input(..) | ArgumentKind::Output { .. } | ArgumentKind::Positional(_) => {
                     if let ArgumentKind::Output { target: Some(target), negated, .. } = &argument.kind
                         && tells
@@ -75,19 +84,24 @@ impl<'s> Checker<'_, 's> {
         Some((enable, rest))
     }
 
-    /// Whether the callee has an EN and an ENO of its own.
-    fn own_parameters(&mut self, what: &Callee<'s>, callee: &ast::Expr<'s>) -> (bool, bool) {
+    fn own_parameters(&mut self, what: &Callee<'s>, callee: &ast::Expr<'s>) -> Owns {
         let slot = match what {
             Callee::Function(slot) | Callee::Routine(slot) => Some(*slot),
             Callee::Instruction(_) | Callee::Standard(_) => None,
             Callee::Instance => match self.static_type(callee) {
-                Some(Type::Block(id)) => return (id.info().pin("EN").is_some(), id.info().pin("ENO").is_some()),
+                Some(Type::Block(id)) => {
+                    let [en, eno] = ["EN", "ENO"].map(|name| id.info().pin(name).is_some());
+                    return Owns { en, eno, tells: eno };
+                }
                 Some(Type::Struct(id)) => self.decl.slot_of_instance(id),
                 _ => None,
             },
         };
         let signature = slot.and_then(|slot| self.decl.signature(slot));
-        signature.map_or((false, false), |it| (own(&it, "EN").is_some(), own(&it, "ENO").is_some()))
+        signature.map_or(Owns::default(), |it| {
+            let [en, eno] = ["EN", "ENO"].map(|name| formal(&it, name).is_some());
+            Owns { en, eno, tells: own(&it, "ENO").is_some() }
+        })
     }
 
     /// A call with EN or ENO. EN is evaluated first, since all else depends on it; where it is FALSE, nothing else of the
@@ -284,9 +298,13 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-/// A POU's own parameter of this name, if it is a BOOL.
+fn formal<'a, 's>(signature: &'a Signature<'s>, name: &str) -> Option<&'a Formal<'s>> {
+    signature.formals.iter().find(|it| it.name.text.eq_ignore_ascii_case(name))
+}
+
+/// A POU's own parameter of this name, if it is a BOOL: one of another type is a parameter like any other.
 fn own<'a, 's>(signature: &'a Signature<'s>, name: &str) -> Option<&'a Formal<'s>> {
-    signature.formals.iter().find(|it| it.name.text.eq_ignore_ascii_case(name) && it.resolved.ty == Type::BOOL)
+    formal(signature, name).filter(|it| it.resolved.ty == Type::BOOL)
 }
 
 /// Where the POU itself finds an output.

@@ -12,7 +12,7 @@ use crate::types::address::is_input;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Class, Instance, Section, Type, Value};
+use staunch_ir::{Class, Elementary, Instance, Section, Value};
 
 pub(super) const LOWEST_PRIORITY: u32 = 65535;
 
@@ -496,11 +496,12 @@ impl<'s> Declarations<'s> {
             }
             let scope = std::rc::Rc::default();
             let value = constant(self, &scope, expr, None);
-            let is_time = value.as_ref().is_none_or(|it| it.ty == Type::TIME);
+            let is_time = value.as_ref().is_none_or(|it| it.ty.elementary().is_some_and(Elementary::is_duration));
             let value = value.and_then(|it| it.as_const());
+            let interval = value.and_then(Value::as_integer).and_then(|it| i64::try_from(it).ok());
             match (name.text.to_ascii_uppercase().as_str(), value) {
-                ("INTERVAL", Some(Value::I64(interval))) if interval > 0 && is_time => {
-                    timing.interval = Some(if is_single { looked_at(interval) } else { interval });
+                ("INTERVAL", Some(_)) if is_time && interval.is_some_and(|it| it > 0) => {
+                    timing.interval = interval.map(|it| if is_single { looked_at(it) } else { it });
                 }
                 // Its run takes a TIME, and says so.
                 ("INTERVAL", Some(_)) if is_single && !is_time => {}

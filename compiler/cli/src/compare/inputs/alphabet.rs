@@ -7,6 +7,7 @@ use crate::compare::pair::{Input, Matched, Pair};
 use crate::compare::program::facts::{Facts, Numbers};
 use crate::compare::program::scalar::{Role, Scalar, Way};
 use crate::compare::program::walked::Name;
+use staunch_host::format_time;
 use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
 use staunch_runtime::StringType;
 use staunch_runtime::time::MILLISECOND;
@@ -39,11 +40,8 @@ impl Alphabet {
         let choice = |(at, input): (usize, &Input)| {
             let mut choice = choice(pair, facts, input, assumptions.near(at));
             assumptions.narrow(at, &mut choice, repr(pair, input));
-            let types = [0, 1].map(|side| pair.scalar(side, input.scalars[side]).ty);
-            if let Some(Range { step, .. }) = times_of_both(pair, types) {
-                // What is next to the end of a range may be no time of a system that counts milliseconds.
-                choice.values.retain(|it| it.as_integer().is_none_or(|it| it % step == 0));
-            }
+            // What is next to the end of a range may be no time of a system that counts milliseconds.
+            choice.values.retain(|it| it.as_integer().is_none_or(|it| it % choice.step == 0));
             choice
         };
         let choices: Vec<Choice> = pair.inputs.iter().enumerate().map(choice).collect();
@@ -213,6 +211,19 @@ pub fn untried(pair: &Pair) -> Vec<&str> {
     inputs.map(|it| pair.path(it)).collect()
 }
 
+/// For each input whose system has values that the other one has not, what is tried.
+pub fn in_common(pair: &Pair) -> Vec<String> {
+    let sentence = |input: &Input| {
+        let types = [0, 1].map(|side: usize| pair.scalar(side, input.scalars[side]).ty);
+        let limits = |side: usize| pair.sides[side].dialect.rules().limits(types[side].elementary()?);
+        let Range { low, high, .. } = times_of_both(pair, types).filter(|_| limits(0) != limits(1))?;
+        let [low, high] = [low, high].map(|it| i64::try_from(it).map_or_else(|_| it.to_string(), format_time));
+        let path = pair.path(input.scalars);
+        Some(format!("Of `{path}`, only what both systems have is tried: {low} to {high}."))
+    };
+    pair.inputs.iter().filter_map(sentence).collect()
+}
+
 /// Outputs of standard blocks that are inputs: they are compared, and only what a call leaves in them is tried.
 pub fn outputs_given(pair: &Pair) -> Vec<&str> {
     let given = pair.matched(|it| it.at.is_given && matches!(it.role, Role::Output(_)));
@@ -249,7 +260,7 @@ fn choice_of_texts(pair: &Pair, facts: [&Facts; 2], input: &Input) -> Choice {
         (is_own && both(Facts::only_compared) && is_short && near.len() <= MAX_VALUES).then_some(Covered::Compared)
     };
     let count = u16::try_from(input.texts.len()).unwrap_or(u16::MAX);
-    Choice { values: (0..count).map(Value::U16).collect(), covered, range: None }
+    Choice { values: (0..count).map(Value::U16).collect(), covered, range: None, step: 1 }
 }
 
 /// The values of an input: on every side of what the programs compare it with, and of what is assumed of it.
@@ -284,7 +295,8 @@ fn choice(pair: &Pair, facts: [&Facts; 2], input: &Input, assumed: Numbers) -> C
         }
     }
     let type_range = pair.sides[0].program.repr(scalars[0].ty).filter(|it| it.is_integer()).and_then(Repr::range);
-    Choice { values: kept, covered, range: times.map(|it| (it.low, it.high)).or(range(0)).or(type_range) }
+    let range = times.map(|it| (it.low, it.high)).or(range(0)).or(type_range);
+    Choice { values: kept, covered, range, step: times.map_or(1, |it| it.step) }
 }
 
 /// The least and the greatest number to try, and what lies between two of them.

@@ -223,7 +223,7 @@ mod tests {
     #[test]
     fn a_range_takes_values_away_and_tries_its_ends() {
         let found = parsed("Target 1..500").unwrap();
-        let mut choice = Choice { values: [0, 7, 501].map(Value::I16).to_vec(), covered: None, range: None };
+        let mut choice = Choice { values: [0, 7, 501].map(Value::I16).to_vec(), covered: None, range: None, step: 1 };
         found.narrow(2, &mut choice, Repr::I16);
         assert_eq!(choice.values, [7, 1, 2, 499, 500].map(Value::I16));
         assert_eq!(choice.covered, None);
@@ -234,7 +234,8 @@ mod tests {
         let found = parsed("Target > 40 and not (Target = 43)\nLevel 0.5..2.5").unwrap();
         assert_eq!(found.near(2).integers.into_iter().collect::<Vec<_>>(), [40, 43]);
         assert_eq!(found.near(3).reals, [0.5, 2.5]);
-        let mut choice = Choice { values: [0.0, 1.0, 3.0].map(Value::F32).to_vec(), covered: None, range: None };
+        let mut choice =
+            Choice { values: [0.0, 1.0, 3.0].map(Value::F32).to_vec(), covered: None, range: None, step: 1 };
         found.narrow(3, &mut choice, Repr::F32);
         assert_eq!(choice.values, [1.0, 0.5, 2.5].map(Value::F32));
         let inputs = |level: f32| [Value::Bool(false), Value::Bool(false), Value::I16(50), Value::F32(level)];

@@ -10,6 +10,8 @@ pub struct Choice {
     pub covered: Option<Covered>,
     /// The whole numbers that the type, or its subrange, has.
     pub range: Option<(i128, i128)>,
+    /// What all of them are multiples of.
+    pub step: i128,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

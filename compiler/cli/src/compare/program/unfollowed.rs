@@ -2,14 +2,17 @@
 //! followed.
 
 use staunch_frontend::Dialect;
-use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Use};
-use staunch_ir::{Field, Program, Section};
+use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
+use staunch_ir::{Field, Program, Section, Type};
+use staunch_runtime::Time;
+use staunch_runtime::time::MILLISECOND;
 
-/// A sentence for each rule that the program's source uses, or whose type it is given from outside.
-pub fn find(program: &Program, dialect: Dialect) -> Vec<String> {
+/// A sentence for each rule that the program's source uses, or whose type it is given from outside, or that its cycle in
+/// nanoseconds asks for.
+pub fn find(program: &Program, dialect: Dialect, cycle: Time) -> Vec<String> {
     let rows = NOT_FOLLOWED.iter().filter(|it| it.dialect == dialect);
     let found = rows.filter_map(|row| {
-        let line = used(program, row.uses)?;
+        let line = used(program, row.uses).or_else(|| timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0))?;
         let system = dialect.name().to_ascii_uppercase();
         Some(format!(
             "{} of {system}, which is not followed here and is used in line {line}: {} ({})",
@@ -33,6 +36,13 @@ pub fn open(program: &Program, dialect: Dialect) -> Vec<String> {
         ))
     });
     found.collect()
+}
+
+/// The first line that declares a timer, for what a timer does in such scans.
+fn timer(program: &Program, wanted: Use) -> Option<u32> {
+    let is_timer = |it: &&Field| matches!(it.ty, Type::Block(block) if block.info().pin("ET").is_some());
+    let declared = program.structs.iter().flat_map(|it| &it.fields).filter(is_timer).map(|it| it.location.line);
+    declared.min().filter(|_| wanted == Use::Part(Part::PartsOfMillisecond))
 }
 
 /// The first line that has it: of a type, also one that declares an input of it.

@@ -163,7 +163,7 @@ impl Report<'_> {
         }
         text += &judged.variants();
         if !matches!(judged.verdict, Verdict::Differs { .. }) {
-            world.open.iter().for_each(|it| _ = writeln!(text, "{it}"));
+            world.open.iter().chain(&world.in_common).for_each(|it| _ = writeln!(text, "{it}"));
         }
         if self.args.stimulus.is_none() {
             text += &self.listed(findings, accepted);

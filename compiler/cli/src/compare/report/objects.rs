@@ -86,6 +86,8 @@ impl Report<'_> {
                 write!(text, ",\"without_run\":{{\"verdict\":\"{}\",\"scans\":{scans},\"trap\":{trap}}}", it.verdict);
         }
         let _ = write!(text, ",\"open\":[{}]", world.open.iter().map(|it| quoted(it)).collect::<Vec<_>>().join(","));
+        let in_common: Vec<_> = world.in_common.iter().map(|it| quoted(it)).collect();
+        let _ = write!(text, ",\"in_common\":[{}]", in_common.join(","));
         if !judged.others.is_empty() {
             let other = |it: &Other| {
                 let without = it.without_run.map(|it| format!(",\"without_run\":{}", quoted(it.0))).unwrap_or_default();

@@ -78,7 +78,10 @@ fn drawn(dice: &mut Dice, choice: &Choice, constants: &[i128]) -> Vec<Value> {
     let (Some(first), None) = (choice.values.first(), choice.covered) else { return Vec::new() };
     let repr = first.repr();
     let one = |dice: &mut Dice| match choice.range {
-        Some(range) => repr.integer(whole(dice, range, constants)?),
+        Some(range) => {
+            let number = whole(dice, range, constants)?;
+            repr.integer(number - number.rem_euclid(choice.step)).filter(|_| number >= range.0)
+        }
         None => real(dice, repr, constants),
     };
     (0..DRAWN).filter_map(|_| one(dice)).collect()

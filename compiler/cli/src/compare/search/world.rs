@@ -35,6 +35,8 @@ pub struct World {
     pub unfollowed: Vec<String>,
     /// Values that the documents of the two systems leave open, and that the programs may come to.
     pub open: Vec<String>,
+    /// Of which inputs only a part of the values is tried, since the other system has no more.
+    pub in_common: Vec<String>,
     /// What is accepted, where the search goes on past it.
     pub tolerance: Option<Tolerance>,
 }
@@ -62,6 +64,7 @@ impl World {
         if alphabet.vectors.is_empty() {
             return Err("the assumptions allow no combination of the values of inputs that are tried".to_owned());
         }
+        let cycle = pair.shortest_cycle();
         let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
         let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);
         let habits = pitfall::uses(pair).into_iter().map(|it| it.habits).collect();
@@ -79,8 +82,9 @@ impl World {
             inputs_written: alphabet::are_written(pair, facts),
             habits,
             computed,
-            unfollowed: pair.sides.iter().flat_map(|it| unfollowed::find(&it.program, it.dialect)).collect(),
+            unfollowed: pair.sides.iter().flat_map(|it| unfollowed::find(&it.program, it.dialect, cycle)).collect(),
             open: pair.sides.iter().flat_map(|it| unfollowed::open(&it.program, it.dialect)).collect(),
+            in_common: alphabet::in_common(pair),
             tolerance: None,
         })
     }

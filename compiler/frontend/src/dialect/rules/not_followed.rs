@@ -36,6 +36,18 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         CODESYS_DATES,
     ),
     not_followed(Dialect::Codesys, Elementary::Tod, "32 bits of milliseconds: it has no parts of one", CODESYS_DATES),
+    NotFollowed {
+        dialect: Dialect::Codesys,
+        what: "ET is a whole number of milliseconds, as every TIME; here it has the parts that the time of the scan has",
+        evidence: "CODESYS help, \"TIME, LTIME\"",
+        uses: Use::Part(Part::PartsOfMillisecond),
+    },
+    NotFollowed {
+        dialect: Dialect::Siemens,
+        what: "ET is a whole number of milliseconds, as every TIME; here it has the parts that the time of the scan has",
+        evidence: "S7-1200 manual, 11/2011, table 4-15",
+        uses: Use::Part(Part::PartsOfMillisecond),
+    },
     of_matiec(Use::Type(Elementary::Time), PARTS),
     of_matiec(
         Use::Part(Part::ComparedTimes),
