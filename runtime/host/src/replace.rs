@@ -66,8 +66,18 @@ impl Drop for Replacement {
 }
 
 /// Names of what a process has open lead to it, and not to a file of that name.
+#[cfg(not(windows))]
 fn is_straight(path: &Path) -> bool {
     path.starts_with("/dev") || path.starts_with("/proc")
+}
+
+/// Names of devices, which have them in every folder.
+#[cfg(windows)]
+fn is_straight(path: &Path) -> bool {
+    use std::path::{Component, Prefix};
+    let is_device = |name: &str| ["NUL", "CON", "CONOUT$", "PRN"].iter().any(|it| name.eq_ignore_ascii_case(it));
+    let of_devices = |it| matches!(it, Component::Prefix(prefix) if matches!(prefix.kind(), Prefix::DeviceNS(_)));
+    path.file_name().and_then(|it| it.to_str()).is_some_and(is_device) || path.components().any(of_devices)
 }
 
 fn straight(path: &Path, target: PathBuf) -> io::Result<(Replacement, File)> {
@@ -186,7 +196,7 @@ fn identity(path: &Path) -> Option<(u64, u64, OsString)> {
 
 #[cfg(not(unix))]
 fn identity(path: &Path) -> Option<PathBuf> {
-    if path == Path::new("-") {
+    if path == Path::new("-") || is_straight(path) {
         return None;
     }
     let folder = path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
