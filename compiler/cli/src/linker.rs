@@ -55,9 +55,11 @@ fn of_rust(foreign: Option<&str>) -> Option<Command> {
     let output = Command::new(rustc).args(["--print", "target-libdir", "--target", host()]).output().ok()?;
     let libraries = PathBuf::from(String::from_utf8(output.stdout).ok()?.trim()).join("self-contained");
     let start = libraries.join("crt2.o");
-    let program = libraries.parent()?.with_file_name("bin").join("self-contained").join("x86_64-w64-mingw32-gcc.exe");
-    let mut command = Command::new(program.is_file().then_some(program)?);
-    command.args(["-fno-use-linker-plugin", "-nostartfiles"]).arg(start).arg("-L").arg(libraries);
+    let programs = libraries.parent()?.with_file_name("bin").join("self-contained");
+    let compiler = programs.join("x86_64-w64-mingw32-gcc.exe");
+    let mut command = Command::new(compiler.is_file().then_some(compiler)?);
+    command.args(["-fno-use-linker-plugin", "-nostartfiles"]).arg(start);
+    command.arg("-B").arg(programs).arg("-L").arg(libraries);
     Some(command)
 }
 

@@ -89,7 +89,8 @@ fn open(path: &Path) -> io::Result<File> {
     if fs::metadata(path).is_ok_and(|it| is_pipe(&it)) && !is_straight(path) {
         crate::error::tell(format_args!("note: {} is a pipe: waiting until it is read", path.display()));
     }
-    File::create(path)
+    // A device of Windows has nothing to empty.
+    if cfg!(windows) && is_straight(path) { File::options().write(true).open(path) } else { File::create(path) }
 }
 
 /// For what must not wait: a file as it is, and a pipe only where it is read.
