@@ -61,7 +61,7 @@ const UNSAFE: &[&str] = &[
     "tests/mutants/ask.rs",
 ];
 
-fn metadata() -> Json {
+pub fn metadata() -> Json {
     let mut cargo = Command::new(env!("CARGO"));
     // What other platforms need has not been downloaded.
     cargo.args(["metadata", "--format-version", "1", "--offline", "--filter-platform", "host-tuple"]);
@@ -70,7 +70,7 @@ fn metadata() -> Json {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-fn texts<'j>(json: &'j Json, list: &str) -> impl Iterator<Item = &'j Json> {
+pub fn texts<'j>(json: &'j Json, list: &str) -> impl Iterator<Item = &'j Json> {
     json[list].as_array().unwrap().iter()
 }
 
@@ -88,7 +88,7 @@ fn edges(metadata: &Json) -> BTreeMap<String, BTreeSet<String>> {
     edges.collect()
 }
 
-fn name(json: &Json) -> String {
+pub fn name(json: &Json) -> String {
     json["name"].as_str().unwrap().to_owned()
 }
 

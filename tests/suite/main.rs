@@ -22,5 +22,6 @@ mod turns;
 mod architecture;
 mod documents;
 mod layers;
+mod packages;
 mod pages;
 mod rules;

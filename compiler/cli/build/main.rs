@@ -36,16 +36,23 @@ fn pack() -> Result<(), String> {
         }
     }
     write(&out.join("runtime-sources"), &archive)?;
-    println!("cargo::rustc-env=STAUNCH_TARGET={}", variable("TARGET")?);
+    let target = target_of_programs()?;
+    println!("cargo::rustc-env=STAUNCH_TARGET={target}");
     println!("cargo::rustc-env=STAUNCH_VERSION={}", version()?);
     let built = out.join("runtime");
     fs::create_dir_all(&built).map_err(|it| it.to_string())?;
-    let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(variable("TARGET")?), level: "3" };
+    let rustc = Rustc { program: variable("RUSTC")?.into(), target: Some(target.clone()), level: "3" };
     rustc.runtime(&unpacked, &built, true)?;
     for library in [Library::Runtime, Library::Program] {
-        strip(&rustc.static_library(library, &built)?);
+        strip(&rustc.static_library(library, &built)?, &target);
     }
     Ok(())
+}
+
+/// A command that is linked statically, so that it runs on every Linux, makes programs with the C library of that Linux.
+fn target_of_programs() -> Result<String, String> {
+    println!("cargo::rerun-if-env-changed=STAUNCH_TARGET_OF_PROGRAMS");
+    env::var("STAUNCH_TARGET_OF_PROGRAMS").or_else(|_| variable("TARGET"))
 }
 
 /// The version, with the commit where it is known. A development build names none: it would be compiled again with each.
@@ -128,8 +135,21 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), String> {
 }
 
 /// Takes out the debug information and the bitcode that are for other builds than this: two
-/// thirds of the library. It works with them too, where the host has no `strip`.
-fn strip(library: &Path) {
+/// thirds of the library, and four fifths for Windows. It works with them too, where the host has no `strip`.
+fn strip(library: &Path, target: &str) {
+    let prefix = match target {
+        "x86_64-pc-windows-gnu" => "x86_64-w64-mingw32-",
+        "aarch64-unknown-linux-gnu" if cfg!(not(target_arch = "aarch64")) => "aarch64-linux-gnu-",
+        _ => "",
+    };
+    let tool = |name: &str| Command::new(format!("{prefix}{name}"));
+    // Debug information in files of its own is nothing that `strip` knows.
+    let members = tool("ar").arg("t").arg(library).output().map(|it| it.stdout).unwrap_or_default();
+    let members = String::from_utf8_lossy(&members);
+    let apart: Vec<_> = members.lines().filter(|it| it.ends_with(".dwo")).collect();
+    if !apart.is_empty() {
+        let _ = tool("ar").arg("d").arg(library).args(apart).output();
+    }
     let sections = ["--strip-debug", "--remove-section=.llvmbc", "--remove-section=.llvmcmd"];
-    let _ = Command::new("strip").args(sections).arg(library).status();
+    let _ = tool("strip").args(sections).arg(library).output();
 }

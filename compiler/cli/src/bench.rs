@@ -138,21 +138,38 @@ fn nanoseconds(value: f64) -> String {
     }
 }
 
-/// Bytes of the executable sections of an ELF object; 0 if it is none of 64 bits.
+/// Bytes of the executable sections of an object of ELF or Windows; 0 if it is none of 64 bits.
 fn text_bytes(object: &[u8]) -> u64 {
-    const EXECUTABLE: u64 = 4;
-    if object.get(..6) != Some(b"\x7fELF\x02\x01") {
-        return 0;
+    if object.starts_with(b"\x7fELF\x02\x01") {
+        of_elf(object).unwrap_or(0)
+    } else if object.starts_with(b"\x64\x86") {
+        of_windows(object).unwrap_or(0)
+    } else {
+        0
     }
-    let number = |at: u64, size: usize| {
-        let at = usize::try_from(at).ok()?;
-        let bytes = object.get(at..at.checked_add(size)?)?;
-        Some(bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte)))
-    };
-    let (Some(table), Some(size), Some(count)) = (number(0x28, 8), number(0x3A, 2), number(0x3C, 2)) else { return 0 };
+}
+
+fn of_elf(object: &[u8]) -> Option<u64> {
+    const EXECUTABLE: u64 = 4;
+    let (table, size, count) = (number(object, 0x28, 8)?, number(object, 0x3A, 2)?, number(object, 0x3C, 2)?);
     let sections = (0..count).map(|it| table + it * size);
-    let sizes = sections.filter_map(|at| Some((number(at + 8, 8)?, number(at + 0x20, 8)?)));
-    sizes.filter(|(flags, _)| flags & EXECUTABLE != 0).map(|(_, size)| size).sum()
+    let sizes = sections.filter_map(|at| Some((number(object, at + 8, 8)?, number(object, at + 0x20, 8)?)));
+    Some(sizes.filter(|(flags, _)| flags & EXECUTABLE != 0).map(|(_, size)| size).sum())
+}
+
+fn of_windows(object: &[u8]) -> Option<u64> {
+    const EXECUTABLE: u64 = 0x2000_0000;
+    let (count, optional) = (number(object, 2, 2)?, number(object, 16, 2)?);
+    let sections = (0..count).map(|it| 20 + optional + it * 40);
+    let sizes = sections.filter_map(|at| Some((number(object, at + 36, 4)?, number(object, at + 16, 4)?)));
+    Some(sizes.filter(|(flags, _)| flags & EXECUTABLE != 0).map(|(_, size)| size).sum())
+}
+
+/// A number of so many bytes, little endian.
+fn number(object: &[u8], at: u64, size: usize) -> Option<u64> {
+    let at = usize::try_from(at).ok()?;
+    let bytes = object.get(at..at.checked_add(size)?)?;
+    Some(bytes.iter().rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte)))
 }
 
 #[cfg(test)]
@@ -173,6 +190,13 @@ mod tests {
         assert_eq!(text_bytes(&object), 107);
         assert_eq!(text_bytes(&object[..70]), 0);
         assert_eq!(text_bytes(b"MZ"), 0);
+        let mut object = vec![0; 20 + 2 * 40];
+        object[..4].copy_from_slice(&[0x64, 0x86, 2, 0]);
+        for (section, flags, size) in [(0, 0x60, 30), (1, 0x40, 9)] {
+            object[20 + section * 40 + 39] = flags;
+            object[20 + section * 40 + 16] = size;
+        }
+        assert_eq!(text_bytes(&object), 30);
     }
 
     #[test]

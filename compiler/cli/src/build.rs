@@ -3,7 +3,7 @@
 use crate::args::{Build, BuildBackend, Emit, Opt};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart, header, link, output, systemd};
+use crate::{REJECTED, apart, header, link, linker, output, systemd};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_native::{Aim, Target};
@@ -18,10 +18,10 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
         return Err("`--opt` is for compiled code: `--emit obj`, `lib` or `exe`".to_owned());
     }
     let Some(program) = session.program() else { return Ok(REJECTED) };
-    let out = args.output.clone().unwrap_or_else(|| default_name(session, args));
-    apart::build(session, &out)?;
     let target = args.target.as_deref().map(full_name);
     let target = target.as_deref();
+    let out = out(session, args, target);
+    apart::build(session, &out)?;
     match args.emit {
         Emit::Rust => {
             let options = staunch_rust::Options { state: State::Lean, names: args.names, ..Default::default() };
@@ -99,6 +99,17 @@ pub fn full_name(target: &str) -> String {
         "riscv64" | "riscv64gc" => "riscv64gc-unknown-linux-gnu".to_owned(),
         "x86_64" => "x86_64-unknown-linux-gnu".to_owned(),
         other => other.to_owned(),
+    }
+}
+
+/// Where to write. Windows does not run a file whose name has no ending.
+fn out(session: &Session, args: &Build, target: Option<&str>) -> PathBuf {
+    let is_run = args.emit == Emit::Exe && linker::is_windows(target);
+    match args.output.clone() {
+        Some(out) if is_run && out.extension().is_none() && out != Path::new("-") => out.with_extension("exe"),
+        Some(out) => out,
+        None if is_run => default_name(session, args).with_added_extension("exe"),
+        None => default_name(session, args),
     }
 }
 

@@ -20,8 +20,9 @@ const FRESH: Duration = Duration::from_secs(60 * 60);
 /// `$STAUNCH_CACHE`, or `staunch` in the user's cache folder, or one below the temporary folder.
 fn root() -> PathBuf {
     let set = |name: &str| env::var_os(name).filter(|it| !it.is_empty()).map(PathBuf::from);
+    let of_user = if cfg!(windows) { "LOCALAPPDATA" } else { "XDG_CACHE_HOME" };
     set("STAUNCH_CACHE")
-        .or_else(|| set("XDG_CACHE_HOME").map(|it| it.join("staunch")))
+        .or_else(|| set(of_user).map(|it| it.join("staunch")))
         .or_else(|| set("HOME").map(|it| it.join(".cache").join("staunch")))
         .unwrap_or_else(|| env::temp_dir().join("staunch"))
 }
@@ -85,11 +86,16 @@ const SEAL: &str = ".files";
 fn seal(folder: &Path) -> io::Result<()> {
     let list = listed(folder)?;
     for path in fs::read_dir(folder)?.flatten().map(|it| it.path()).filter(|it| it.is_file()) {
-        fs::File::open(path)?.sync_all()?;
+        sync(&path)?;
     }
     let seal = folder.join(SEAL);
     fs::write(&seal, list)?;
-    fs::File::open(seal)?.sync_all()
+    sync(&seal)
+}
+
+/// Windows syncs what is open for writing.
+fn sync(file: &Path) -> io::Result<()> {
+    fs::File::options().write(true).open(file)?.sync_all()
 }
 
 /// Whether the entry is as it was made: a power cut may leave files of a folder empty.

@@ -11,17 +11,20 @@ static HOST_RUNTIME: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/runtime/l
 static HOST_PROGRAM: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/runtime/libstaunch_program.a"));
 
 /// What the standard library inside the runtime's library needs of the system.
-const SYSTEM_LIBRARIES: [&str; 5] = ["-lgcc_s", "-lpthread", "-ldl", "-lm", "-lc"];
+const OF_LINUX: [&str; 5] = ["-lgcc_s", "-lpthread", "-ldl", "-lm", "-lc"];
+const OF_WINDOWS: [&str; 6] = ["-lkernel32", "-lntdll", "-luserenv", "-lws2_32", "-ldbghelp", "-lgcc_eh"];
 
 /// Links a program's object to an executable.
 pub fn executable(object: &[u8], target: Option<&str>, out: &Path) -> Result<(), String> {
     let mut command = linker::find(target)?;
     let library = runtime_library(target, Library::Program)?;
     let folder = scratch::folder()?;
-    let made = folder.path().join("program");
+    let (ending, system): (&str, &[&str]) =
+        if linker::is_windows(target) { (".exe", &OF_WINDOWS) } else { ("", &OF_LINUX) };
+    let made = folder.path().join(format!("program{ending}"));
     command.arg(write(folder.path(), "program.o", object)?);
     command.arg(write(folder.path(), Library::Program.file(), &library)?);
-    command.arg("-Wl,--gc-sections").args(SYSTEM_LIBRARIES).arg("-o").arg(&made);
+    command.arg("-Wl,--gc-sections").args(system).arg("-o").arg(&made);
     run(command, &out.display().to_string())?;
     output::executable(out, &read(&made)?)
 }

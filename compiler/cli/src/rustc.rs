@@ -148,7 +148,7 @@ pub fn compile(program: &Program, kind: Kind, target: Option<&str>, opt: Opt) ->
         let mut command = rustc.command();
         command.args(["--edition", "2024", "--crate-name", "program", "-Cstrip=debuginfo"]).arg(&source);
         match kind {
-            Kind::Executable => executable(&mut command, folder, linker.as_ref()),
+            Kind::Executable => executable(&mut command, &folder.join(executable_name(&rustc)), linker.as_ref()),
             Kind::StaticLibrary | Kind::Object => library(&mut command, folder),
         }
         let crates: &[&str] =
@@ -156,18 +156,23 @@ pub fn compile(program: &Program, kind: Kind, target: Option<&str>, opt: Opt) ->
         link_args(&mut command, &runtime, crates);
         run(command, "the program")
     })?;
-    Ok(folder.join(match kind {
-        Kind::Executable => "program",
-        Kind::StaticLibrary => LIBRARY,
-        Kind::Object => OBJECT,
-    }))
+    Ok(match kind {
+        Kind::Executable => folder.join(executable_name(&rustc)),
+        Kind::StaticLibrary => folder.join(LIBRARY),
+        Kind::Object => folder.join(OBJECT),
+    })
 }
 
 const LIBRARY: &str = "libprogram.a";
 const OBJECT: &str = "program.o";
 
-fn executable(command: &mut Command, folder: &Path, linker: Option<&OsString>) {
-    command.args(["--crate-type", "bin", "-Ccodegen-units=1", "-o"]).arg(folder.join("program"));
+/// Windows runs nothing without this ending.
+fn executable_name(rustc: &Rustc) -> &'static str {
+    if linker::is_windows(rustc.target.as_deref()) { "program.exe" } else { "program" }
+}
+
+fn executable(command: &mut Command, file: &Path, linker: Option<&OsString>) {
+    command.args(["--crate-type", "bin", "-Ccodegen-units=1", "-o"]).arg(file);
     if let Some(linker) = linker {
         let mut argument = OsString::from("-Clinker=");
         argument.push(linker);

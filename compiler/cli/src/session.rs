@@ -281,11 +281,14 @@ impl Session {
 
     fn color(&self) -> bool {
         match self.common.color() {
-            Color::Always => true,
+            Color::Always => {
+                shows_colors();
+                true
+            }
             Color::Never => false,
             Color::Auto => {
                 let wanted = std::env::var_os("NO_COLOR").is_none_or(|it| it.is_empty());
-                wanted && std::io::stderr().is_terminal()
+                wanted && std::io::stderr().is_terminal() && shows_colors()
             }
         }
     }
@@ -351,6 +354,17 @@ impl Session {
             let _ = writeln!(std::io::stderr(), "{verb:>12} {what}");
         }
     }
+}
+
+/// A console of Windows shows colours when it is asked to, and else their codes.
+#[cfg(windows)]
+fn shows_colors() -> bool {
+    anstyle_query::windows::enable_ansi_colors().unwrap_or(true)
+}
+
+#[cfg(not(windows))]
+fn shows_colors() -> bool {
+    true
 }
 
 /// The sources whose execution is counted: the program's own, which come first.

@@ -116,6 +116,7 @@ impl Rustc {
             .args(["--crate-type", "rlib", "--edition", recipe.edition])
             .args(["--crate-name", &crate_name(recipe.package)])
             .args(recipe.flags)
+            .arg(remapped(sources))
             .env("CFG_CARGO_FEATURES", "[]")
             .env("CFG_OPT_LEVEL", self.level)
             .env("CFG_TARGET_FEATURES", "[]")
@@ -144,6 +145,14 @@ impl Rustc {
         run(command, "the runtime library")?;
         Ok(file)
     }
+}
+
+/// Messages name a source by its place in the archive, wherever that was unpacked.
+fn remapped(sources: &Path) -> OsString {
+    let mut argument = OsString::from("--remap-path-prefix=");
+    argument.push(sources);
+    argument.push("=staunch");
+    argument
 }
 
 /// Names the rlibs in `out` to a rustc call.

@@ -3,14 +3,15 @@
 use crate::entry::EntryPoints;
 use crate::program;
 use crate::{Error, target};
+use core::ffi::c_int;
 use core::fmt;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
 use cranelift_module::default_libcall_names;
 use staunch_ir::Program;
 use staunch_runtime::Context;
 
-/// Addresses set aside for code and data; only what is used becomes memory.
-const RESERVED: usize = 1 << 30;
+/// Addresses set aside for code and data; only what is used becomes memory. On Windows all of it counts as memory in use.
+const RESERVED: usize = if cfg!(windows) { 1 << 27 } else { 1 << 30 };
 
 /// Writes the initial values over all of the state.
 pub type Init = unsafe extern "C" fn(state: *mut u8);
@@ -43,6 +44,7 @@ impl Jit {
         staunch_runtime_abi::for_each_symbol(&mut |name, address| {
             builder.symbol(name, address);
         });
+        builder.symbols(of_c_library());
         // Code and data must lie near each other.
         let memory = ArenaMemoryProvider::new_with_size(RESERVED).map_err(|error| Error::Output(error.to_string()))?;
         builder.memory_provider(Box::new(memory));
@@ -64,6 +66,24 @@ impl Jit {
             module: Some(module),
         }
     }
+}
+
+/// What Cranelift calls. A process that is linked statically has no table in which it could be looked up.
+fn of_c_library() -> [(&'static str, *const u8); 5] {
+    unsafe extern "C" {
+        fn memcpy(to: *mut u8, from: *const u8, size: usize) -> *mut u8;
+        fn memmove(to: *mut u8, from: *const u8, size: usize) -> *mut u8;
+        fn memset(to: *mut u8, byte: c_int, size: usize) -> *mut u8;
+        fn nearbyint(value: f64) -> f64;
+        fn nearbyintf(value: f32) -> f32;
+    }
+    [
+        ("memcpy", memcpy as *const u8),
+        ("memmove", memmove as *const u8),
+        ("memset", memset as *const u8),
+        ("nearbyint", nearbyint as *const u8),
+        ("nearbyintf", nearbyintf as *const u8),
+    ]
 }
 
 impl Drop for Jit {

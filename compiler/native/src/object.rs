@@ -8,7 +8,7 @@ use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_ir::symbols::map_text;
 
-/// A relocatable object with the entry points of a verified program: position independent,
+/// A relocatable object with the entry points of a verified program: position independent where the target is ELF,
 /// without unwind tables. It needs the symbols of `staunch-runtime-abi`, `memcpy`, `memmove` and
 /// `memset`.
 ///
@@ -19,9 +19,11 @@ pub fn object(program: &Program, target: &Target) -> Result<Vec<u8>, Error> {
     program::emit(program, &mut module, None)?;
     entry::map(&mut module, &map_text(program, &Layout::new(program)))?;
     let mut product = module.finish();
-    // Without this section a linker takes the stack to be executable.
-    let name = b".note.GNU-stack".to_vec();
-    product.object.add_section(Vec::new(), name, SectionKind::Other);
+    if target.is_elf() {
+        // Without this section a linker takes the stack to be executable.
+        let name = b".note.GNU-stack".to_vec();
+        product.object.add_section(Vec::new(), name, SectionKind::Other);
+    }
     product.emit().map_err(|error| Error::Output(error.to_string()))
 }
 

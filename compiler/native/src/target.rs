@@ -48,8 +48,12 @@ const RISCV64: &[&str] = &["has_m", "has_a", "has_f", "has_d", "has_zicsr", "has
 impl Target {
     /// The targets that the tests link and run. Others of these machines with ELF objects, such
     /// as musl, work the same way.
-    pub const SUPPORTED: [&'static str; 3] =
-        ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu", "riscv64gc-unknown-linux-gnu"];
+    pub const SUPPORTED: [&'static str; 4] = [
+        "x86_64-unknown-linux-gnu",
+        "aarch64-unknown-linux-gnu",
+        "riscv64gc-unknown-linux-gnu",
+        "x86_64-pc-windows-gnu",
+    ];
 
     /// The machine that this runs on.
     ///
@@ -84,10 +88,12 @@ impl Target {
             Architecture::Riscv64(_) => Machine::Riscv64,
             _ => return Err(unknown(&name)),
         };
-        if triple.binary_format != BinaryFormat::Elf || triple.environment == Environment::Sgx {
-            return Err(unknown(&name));
-        }
-        Ok(Self { triple, machine, aim: Aim::Speed })
+        let is_known = match triple.binary_format {
+            BinaryFormat::Elf => triple.environment != Environment::Sgx,
+            BinaryFormat::Coff => machine == Machine::X86_64 && triple.environment == Environment::Gnu,
+            _ => false,
+        };
+        if is_known { Ok(Self { triple, machine, aim: Aim::Speed }) } else { Err(unknown(&name)) }
     }
 
     /// The same machine, with code for that aim.
@@ -101,6 +107,10 @@ impl Target {
         self.triple.to_string()
     }
 
+    pub(crate) fn is_elf(&self) -> bool {
+        self.triple.binary_format == BinaryFormat::Elf
+    }
+
     /// For objects that any machine of the target runs.
     pub(crate) fn isa(&self) -> Result<OwnedTargetIsa, Error> {
         let mut builder = isa::lookup(self.triple.clone()).map_err(|_| unknown(&self.name()))?;
@@ -112,7 +122,9 @@ impl Target {
         for feature in features {
             builder.enable(feature).expect("a feature of the machine");
         }
-        builder.finish(flags("true", self.aim)).map_err(|error| Error::Output(error.to_string()))
+        // Windows moves code by relocations, and has no table of addresses that position-independent code would ask.
+        let is_pic = if self.is_elf() { "true" } else { "false" };
+        builder.finish(flags(is_pic, self.aim)).map_err(|error| Error::Output(error.to_string()))
     }
 }
 
@@ -181,7 +193,7 @@ mod tests {
     #[test]
     fn short_names_are_linux() {
         let names = ["x86_64", "aarch64", "riscv64"].map(|name| Target::parse(name).unwrap().name());
-        assert_eq!(names, Target::SUPPORTED);
+        assert_eq!(names, Target::SUPPORTED[..3]);
         for name in Target::SUPPORTED {
             let isa = Target::parse(name).unwrap().isa().unwrap();
             assert_eq!(plain_isa(&*isa).flags().opt_level(), settings::OptLevel::None);

@@ -66,8 +66,18 @@ impl Drop for Replacement {
 }
 
 /// Names of what a process has open lead to it, and not to a file of that name.
+#[cfg(not(windows))]
 fn is_straight(path: &Path) -> bool {
     path.starts_with("/dev") || path.starts_with("/proc")
+}
+
+/// Names of devices, which have them in every folder.
+#[cfg(windows)]
+fn is_straight(path: &Path) -> bool {
+    use std::path::{Component, Prefix};
+    let is_device = |name: &str| ["NUL", "CON", "CONOUT$", "PRN"].iter().any(|it| name.eq_ignore_ascii_case(it));
+    let of_devices = |it| matches!(it, Component::Prefix(prefix) if matches!(prefix.kind(), Prefix::DeviceNS(_)));
+    path.file_name().and_then(|it| it.to_str()).is_some_and(is_device) || path.components().any(of_devices)
 }
 
 fn straight(path: &Path, target: PathBuf) -> io::Result<(Replacement, File)> {
@@ -79,7 +89,8 @@ fn open(path: &Path) -> io::Result<File> {
     if fs::metadata(path).is_ok_and(|it| is_pipe(&it)) && !is_straight(path) {
         crate::error::tell(format_args!("note: {} is a pipe: waiting until it is read", path.display()));
     }
-    File::create(path)
+    // A device of Windows has nothing to empty.
+    if cfg!(windows) && is_straight(path) { File::options().write(true).open(path) } else { File::create(path) }
 }
 
 /// For what must not wait: a file as it is, and a pipe only where it is read.
@@ -188,7 +199,7 @@ fn identity(path: &Path) -> Option<(u64, u64, OsString)> {
 
 #[cfg(not(unix))]
 fn identity(path: &Path) -> Option<PathBuf> {
-    if path == Path::new("-") {
+    if path == Path::new("-") || is_straight(path) {
         return None;
     }
     let folder = path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));

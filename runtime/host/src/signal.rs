@@ -16,12 +16,14 @@ pub(crate) fn ask_for_figures_again() {
     FIGURES.store(true, Ordering::Relaxed);
 }
 
-/// TRUE once SIGINT, SIGTERM or SIGHUP has arrived: the run now ends by itself, however long that takes.
+/// TRUE once SIGINT, SIGTERM or SIGHUP has arrived, on Windows Ctrl-C or the end of the console: the run now ends by itself, however long that takes.
 pub(crate) fn asked_to_stop() -> bool {
     let asked = ASKED.load(Ordering::Relaxed);
-    #[cfg(unix)]
     if asked {
+        #[cfg(unix)]
         unix::patience(0);
+        #[cfg(windows)]
+        windows::hear();
     }
     asked
 }
@@ -101,6 +103,57 @@ mod unix {
     }
 }
 
+#[cfg(windows)]
+mod windows {
+    use super::{ASKED, AtomicBool, Ordering};
+    use std::thread::sleep;
+    use std::time::Duration;
+
+    static HEARD: AtomicBool = AtomicBool::new(false);
+
+    const INTERRUPTS: [u32; 2] = [0, 1];
+    /// Naps of 10 ms that a scan may still take.
+    const PATIENCE: u32 = 200;
+    const NAP: Duration = Duration::from_millis(10);
+    /// The next handler, which ends the process, is called.
+    const PASS: i32 = 0;
+    const HANDLED: i32 = 1;
+
+    #[link(name = "kernel32")]
+    unsafe extern "system" {
+        fn SetConsoleCtrlHandler(handler: extern "system" fn(u32) -> i32, add: i32) -> i32;
+    }
+
+    /// Runs in a thread of its own. A second Ctrl-C ends the process at once.
+    extern "system" fn stop(event: u32) -> i32 {
+        if ASKED.swap(true, Ordering::Relaxed) {
+            return PASS;
+        }
+        let is_heard = (0..PATIENCE).any(|_| {
+            sleep(NAP);
+            HEARD.load(Ordering::Relaxed)
+        });
+        if !is_heard {
+            return PASS;
+        }
+        // When the console is closed, the process ends as soon as this returns: the run is to end before.
+        while !INTERRUPTS.contains(&event) {
+            sleep(NAP);
+        }
+        HANDLED
+    }
+
+    /// The run ends by itself.
+    pub fn hear() {
+        HEARD.store(true, Ordering::Relaxed);
+    }
+
+    pub fn listen() {
+        // SAFETY: the handler makes safe calls alone, in its own thread.
+        unsafe { SetConsoleCtrlHandler(stop, 1) };
+    }
+}
+
 /// An output whose reader has gone is an error to be handled, and no end of the process: Rust's own `main` makes
 /// it so, and C's does not.
 pub(crate) fn ignore_closed_pipes() {
@@ -108,8 +161,11 @@ pub(crate) fn ignore_closed_pipes() {
     unix::ignore_closed_pipes();
 }
 
-/// From now on, SIGINT, SIGTERM and SIGHUP ask for an end instead of making one, and SIGUSR1 asks for figures.
+/// From now on, SIGINT, SIGTERM and SIGHUP, on Windows Ctrl-C and the end of the console, ask for an end instead of making one, and SIGUSR1
+/// asks for figures.
 pub(crate) fn listen() {
     #[cfg(unix)]
     unix::listen();
+    #[cfg(windows)]
+    windows::listen();
 }

@@ -30,7 +30,24 @@ fn of_terminal() -> Option<usize> {
     (done == 0 && size[1] > 0).then(|| usize::from(size[1]))
 }
 
-#[cfg(not(any(target_os = "linux", target_os = "macos")))]
+#[cfg(windows)]
+fn of_terminal() -> Option<usize> {
+    use core::ffi::c_void;
+    const STANDARD_OUTPUT: u32 = 11_u32.wrapping_neg();
+    #[link(name = "kernel32")]
+    unsafe extern "system" {
+        fn GetStdHandle(which: u32) -> *mut c_void;
+        fn GetConsoleScreenBufferInfo(console: *mut c_void, info: *mut [i16; 11]) -> i32;
+    }
+    // Sizes, places and colours; of the window's edges the left one is at 5, and the right one at 7.
+    let mut info = [0_i16; 11];
+    // SAFETY: the call fills a CONSOLE_SCREEN_BUFFER_INFO, which is eleven of these. On anything else it fails.
+    let done = unsafe { GetConsoleScreenBufferInfo(GetStdHandle(STANDARD_OUTPUT), &raw mut info) };
+    let columns = i32::from(info[7]) - i32::from(info[5]) + 1;
+    usize::try_from(columns).ok().filter(|it| done != 0 && *it > 1)
+}
+
+#[cfg(not(any(target_os = "linux", target_os = "macos", windows)))]
 fn of_terminal() -> Option<usize> {
     None
 }

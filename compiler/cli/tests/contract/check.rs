@@ -239,13 +239,25 @@ fn codes_are_explained() {
 #[test]
 fn shells_and_manuals_know_the_command() {
     let folder = Folder::new("manual");
+    let help = folder.staunch("--help").out(0);
+    let listed = help.lines().skip_while(|it| *it != "Commands:").skip(1).take_while(|it| !it.is_empty());
+    // The text of a command goes on further right.
+    let starts = listed.filter_map(|it| it.strip_prefix("  ")).filter(|it| !it.starts_with(' '));
+    let verbs: Vec<_> = starts.filter_map(|it| it.split_whitespace().next()).filter(|it| *it != "help").collect();
+    assert!(verbs.contains(&"doctor"), "{help}");
     for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
-        has(&folder.staunch(&format!("completions {shell}")).out(0), &["staunch", "stimulus"]);
+        let text = folder.staunch(&format!("completions {shell}")).out(0);
+        has(&text, &["staunch", "stimulus"]);
+        has(&text, &verbs);
     }
     folder.staunch("completions cmd").err(2);
     has(&folder.staunch("man").out(0), &[".TH", "staunch"]);
     folder.staunch("man pages").out(0);
     has(&folder.read("pages/staunch-run.1"), &["stimulus", "loop"]);
+    for verb in &verbs {
+        has(&folder.read("pages/staunch.1"), &[&format!("staunch\\-{verb}(1)")]);
+        has(&folder.read(&format!("pages/staunch-{verb}.1")), &[".TH"]);
+    }
 }
 
 #[test]

@@ -19,6 +19,10 @@ pub(super) fn take(path: &Path) -> io::Result<Option<File>> {
     }
 }
 
+#[cfg(any(unix, windows))]
+const TAKEN_BY_OTHERS: &str =
+    "another process keeps its retained variables there: end it, or give this one a file of its own";
+
 /// Locks a file until it is closed.
 #[cfg(unix)]
 pub(super) fn hold(file: &File) -> io::Result<()> {
@@ -32,15 +36,43 @@ pub(super) fn hold(file: &File) -> io::Result<()> {
     let locked = unsafe { flock(file.as_raw_fd(), EXCLUSIVE | AT_ONCE) };
     match (locked, io::Error::last_os_error()) {
         (0, _) => Ok(()),
-        (_, error) if error.kind() == io::ErrorKind::WouldBlock => Err(io::Error::other(
-            "another process keeps its retained variables there: end it, or give this one a file of its own",
-        )),
+        (_, error) if error.kind() == io::ErrorKind::WouldBlock => Err(io::Error::other(TAKEN_BY_OTHERS)),
         // Some network file systems have no locks.
         _ => Ok(()),
     }
 }
 
-#[cfg(not(unix))]
+/// Locks a file until it is closed.
+#[cfg(windows)]
+pub(super) fn hold(file: &File) -> io::Result<()> {
+    use core::ffi::c_void;
+    use std::os::windows::io::AsRawHandle;
+    const AT_ONCE: u32 = 1;
+    const EXCLUSIVE: u32 = 2;
+    const TAKEN: i32 = 33;
+    /// Windows' OVERLAPPED.
+    #[repr(C)]
+    struct Place {
+        internal: [usize; 2],
+        offset: [u32; 2],
+        event: *mut c_void,
+    }
+    #[link(name = "kernel32")]
+    unsafe extern "system" {
+        fn LockFileEx(file: *mut c_void, flags: u32, _: u32, low: u32, high: u32, place: *mut Place) -> i32;
+    }
+    // Nobody may read or write what is locked: a byte where no file has one.
+    let mut place = Place { internal: [0; 2], offset: [0, 0x7FFF_FFFF], event: core::ptr::null_mut() };
+    // SAFETY: the handle is open, and the place is as Windows has it, and there until the call returns.
+    let locked = unsafe { LockFileEx(file.as_raw_handle(), EXCLUSIVE | AT_ONCE, 0, 1, 0, &raw mut place) };
+    match (locked, io::Error::last_os_error().raw_os_error()) {
+        (0, Some(TAKEN)) => Err(io::Error::other(TAKEN_BY_OTHERS)),
+        // Some network file systems have no locks.
+        _ => Ok(()),
+    }
+}
+
+#[cfg(not(any(unix, windows)))]
 pub(super) fn hold(_: &File) -> io::Result<()> {
     Ok(())
 }
