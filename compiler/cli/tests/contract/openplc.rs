@@ -151,10 +151,10 @@ fn pins_that_contradict_each_other_are_reported() {
     folder.write("devices/pin-mapping.json", pins);
     let found = folder.staunch("check . --message-format short").err(1);
     let expected = [
-        "devices/pin-mapping.json:3:58: error[E0033]: `%IX0.0` is the address of two pins, `2` and `3`",
-        "devices/pin-mapping.json:4:76: error[E0033]: `FloatSwitch` is the alias of two pins, `2` and `4`",
-        "devices/pin-mapping.json:5:59: error[E0033]: `%IX0.5` is not an address of this kind of pin, `%QX…`",
-        "devices/pin-mapping.json:6:57: error[E0033]: `seven` is not an address",
+        "devices/pin-mapping.json:3:55: error[E0033]: `%IX0.0` is the address of two pins, `2` and `3`",
+        "devices/pin-mapping.json:4:74: error[E0033]: `FloatSwitch` is the alias of two pins, `2` and `4`",
+        "devices/pin-mapping.json:5:56: error[E0033]: `%IX0.5` is not an address of this kind of pin, `%QX…`",
+        "devices/pin-mapping.json:6:54: error[E0033]: `seven` is not an address",
         "devices/pin-mapping.json:7:3: error[E0033]: a text is not a pin of OpenPLC Editor, which is an object",
     ];
     has(&found, &expected);
@@ -163,17 +163,10 @@ fn pins_that_contradict_each_other_are_reported() {
 #[test]
 fn the_dialect_is_that_of_the_editor() {
     let folder = project("openplc-dialect");
-    // An F_TRIG sees an edge in its first call on neither; a literal with a fraction of a byte does.
-    let counts =
-        MAIN.replace("level := level + pulses.count;", "level := UINT#200; mode := SEL(level > 7, Idle, Filling);");
-    folder.write("pous/programs/main.st", counts);
+    folder.write("pous/programs/main.st", "PROGRAM main VAR c : CTD; END_VAR c(CD := TRUE, PV := 1); END_PROGRAM\n");
     let dialect = |folder: &Folder, arguments: &str| {
-        folder.write(
-            "pous/programs/main.st",
-            "PROGRAM main VAR c : CTD; END_VAR c(CD := TRUE, LD := FALSE, PV := 1); END_PROGRAM\n",
-        );
-        let lints = folder.staunch(&format!("check . {arguments}"));
-        if lints.err.contains("W0616") { "openplc4" } else { "another" }
+        let rust = folder.staunch(&format!("build . --emit rust -o - {arguments}")).out(0);
+        if rust.contains("openplc4::Ctd") { "openplc4" } else { "another" }
     };
     assert_eq!(dialect(&folder, ""), "openplc4");
     assert_eq!(dialect(&folder, "--dialect openplc"), "another");
@@ -206,7 +199,7 @@ fn bodies_in_other_languages_are_refused_by_name() {
     folder.write("pous/programs/main.st", MAIN.replace("mode := Filling;", "mode := Area(w := 2.0, h := 3.0);"));
     let found = folder.staunch("check . --message-format short").err(1);
     let expected = [
-        "pous/programs/lamps.ld:11:1: error[E0902]: the body of `lamps` is a ladder diagram (LD), not Structured Text",
+        "pous/programs/lamps.ld:12:1: error[E0902]: the body of `lamps` is a ladder diagram (LD), not Structured Text",
         "pous/function-blocks/Native.cpp:5:1: error[E0902]: the body of `Native` is C or C++, not Structured Text",
         "pous/functions/Area.py:5:1: error[E0902]: the body of `Area` is Python, not Structured Text",
         "pous/functions/Empty.il:1:20: error[E0902]: the body of `Empty` is Instruction List (IL), not Structured Text",
@@ -226,7 +219,7 @@ fn a_pou_is_in_one_file() {
     folder.write("pous/function-blocks/Pulses.json", json);
     folder.staunch("check .").err(0);
     std::fs::remove_file(folder.0.join("pous/function-blocks/Pulses.st")).unwrap();
-    has(&folder.staunch("check .").err(1), &["pous/function-blocks/Pulses.json:2:56"]);
+    has(&folder.staunch("check .").err(1), &["pous/function-blocks/Pulses.json:2:"]);
     folder.write("pous/function-blocks/Pulses.st", PULSES);
     folder.write("pous/function-blocks/Again.st", PULSES);
     has(&folder.staunch("check .").err(1), &["Again.st:1:16", "Pulses.st:1:16", "`Pulses` is declared twice"]);
@@ -276,7 +269,8 @@ fn damaged_files_are_reported_where_they_are_damaged() {
 #[test]
 fn a_project_moves_to_another_system() {
     let folder = project("openplc-moved");
-    let to_codesys = folder.staunch("compare . --from openplc4 --to codesys --write codesys.st").out(0);
-    has(&to_codesys, &["openplc4 and codesys are equal"]);
+    // The two keep other variables over a restart, which is no matter of the files.
+    folder.staunch("compare . --from openplc4 --to codesys --write codesys.st").out(1);
+    has(&folder.read("codesys.st"), &["full AT %IX0.0 : BOOL; (* the float *)", "level AT %MW0 : UINT := 20;"]);
     folder.staunch("check codesys.st --dialect codesys").err(0);
 }

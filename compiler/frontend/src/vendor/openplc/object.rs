@@ -31,11 +31,7 @@ impl<'t> Object<'t> {
     /// An object that has to be there.
     pub fn needed(&self, name: &str, what: &str, out: &mut Assembly) -> Option<Self> {
         if self.get(name).is_none() {
-            out.problem(
-                Trouble::Odd,
-                format!("`{name}` is missing: {what} of OpenPLC Editor has it"),
-                &self.start(),
-            );
+            out.problem(Trouble::Odd, format!("`{name}` is missing: {what} of OpenPLC Editor has it"), &self.start());
         }
         self.object(name, out)
     }
