@@ -88,7 +88,7 @@ fn item<'s>(item: &mut Item<'s>, change: &mut impl FnMut(&mut VarDecl<'s>)) {
             blocks(&mut it.globals, change);
             it.resources.iter_mut().for_each(|it| blocks(&mut it.globals, change));
         }
-        // A place in a structure is no address.
+        // A place in a structure is not an address.
         Item::Types(_) => {}
     }
 }

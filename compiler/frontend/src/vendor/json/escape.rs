@@ -17,7 +17,7 @@ pub fn escaped(text: &str) -> Option<(char, usize)> {
     Some((symbol, 2))
 }
 
-/// Half of a pair alone is no character: it is replaced, as other readers do.
+/// Half of a pair alone is not a character: it is replaced, as other readers do.
 fn unicode(text: &str) -> Option<(char, usize)> {
     let first = unit(text)?;
     let second = if matches!(first, 0xd800..=0xdbff) { text.get(6..).and_then(unit) } else { None };
