@@ -11,7 +11,8 @@ const POUS: [&str; 3] = ["pous/functions", "pous/function-blocks", "pous/program
 /// The endings of these files; `.json` is that of the editors before v4.1.
 const LANGUAGES: [&str; 8] = ["st", "il", "ld", "fbd", "sfc", "py", "cpp", "json"];
 
-/// Whether a file is such a project: it has its name, and says so, or has POUs in its folder. Other tools have JSON of that name.
+/// Whether a file is such a project: it has its name, and says so, or has POUs in its folder. Other tools have JSON of
+/// that name.
 pub fn is_project(path: &Path) -> bool {
     path.file_name().is_some_and(|it| it == NAME)
         && path.is_file()
