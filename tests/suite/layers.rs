@@ -8,7 +8,7 @@ use std::path::Path;
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 27] = [
+const LAYERS: [&str; 28] = [
     "vendor",
     "source",
     "spelling",
@@ -26,6 +26,7 @@ const LAYERS: [&str; 27] = [
     "dialect",
     "options",
     "log",
+    "locate",
     "prelude",
     "names",
     "inherit",

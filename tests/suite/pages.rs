@@ -92,7 +92,8 @@ impl Example {
         let mut sources = Sources::default();
         for (path, text) in self.files() {
             // The file of another system is read as it is.
-            let text = if text.trim_start().starts_with('<') { text } else { wrapped(&text) };
+            let is_whole = text.trim_start().starts_with('<') || Source::is_openplc_project(text.as_bytes());
+            let text = if is_whole { text } else { wrapped(&text) };
             let source = Source::decode(path, text.as_bytes());
             sources.add(if path.starts_with("lib/") { source.of_library("lib") } else { source });
         }

@@ -12,12 +12,7 @@ pub fn find(paths: &[PathBuf], cargo: &mut Instructions) -> Result<Vec<PathBuf>,
         if path.is_dir() {
             search(path, cargo, &mut found)?;
         } else if listing::is_list(path) {
-            let (sources, lists) = listing::sources(path).map_err(|error| {
-                cargo.error(&error);
-                Failed
-            })?;
-            lists.iter().chain(&sources).for_each(|it| cargo.rerun_if_changed(it));
-            found.extend(sources);
+            list(path, cargo, &mut found)?;
         } else {
             cargo.rerun_if_changed(path);
             found.push(path.clone());
@@ -26,8 +21,22 @@ pub fn find(paths: &[PathBuf], cargo: &mut Instructions) -> Result<Vec<PathBuf>,
     Ok(found)
 }
 
+/// What a list leads to.
+fn list(path: &Path, cargo: &mut Instructions, found: &mut Vec<PathBuf>) -> Result<(), Failed> {
+    let (sources, lists) = listing::sources(path).map_err(|error| {
+        cargo.error(&error);
+        Failed
+    })?;
+    lists.iter().chain(&sources).for_each(|it| cargo.rerun_if_changed(it));
+    found.extend(sources);
+    Ok(())
+}
+
 fn search(folder: &Path, cargo: &mut Instructions, found: &mut Vec<PathBuf>) -> Result<(), Failed> {
     cargo.rerun_if_changed(folder);
+    if let Some(project) = listing::project_in(folder) {
+        return list(&project, cargo, found);
+    }
     let entries = std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>);
     let entries = entries.map_err(|error| cargo.failed("read", folder, &error))?;
     let mut paths: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();

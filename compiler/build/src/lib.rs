@@ -199,7 +199,7 @@ impl Build {
         };
         let project = self.project(cargo).map_err(|error| fail(cargo, error))?;
         let sources = self.read(&project, cargo)?;
-        let (options, levels) = self.settings(&project).map_err(|error| fail(cargo, error))?;
+        let (options, levels) = self.settings(&project, &sources).map_err(|error| fail(cargo, error))?;
         let compilation = staunch_frontend::compile(&sources, &options);
         let diagnostics: Vec<_> = compilation.diagnostics.into_iter().filter_map(|it| levels.apply(it)).collect();
         let is_rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
@@ -243,9 +243,13 @@ impl Build {
     }
 
     /// What this build says, before what its project file does.
-    fn settings(&self, project: &Project) -> Result<(staunch_frontend::Options, Levels), String> {
+    fn settings(&self, project: &Project, sources: &Sources) -> Result<(staunch_frontend::Options, Levels), String> {
         let options = staunch_frontend::Options {
-            dialect: self.dialect.or(project.dialect()?).unwrap_or_default(),
+            dialect: self
+                .dialect
+                .or(project.dialect()?)
+                .or_else(|| Dialect::named(sources.dialect()?))
+                .unwrap_or_default(),
             ctu_stop_at_pv: self.ctu_stop_at_pv.unwrap_or(project.ctu_stop_at_pv),
             openplc4_cd_rises: self.openplc4_cd_rises.unwrap_or(project.openplc4_cd_rises),
             s7_ld_edge: self.s7_ld_edge.unwrap_or(project.s7_ld_edge),
@@ -268,7 +272,7 @@ impl Build {
             project.libraries.iter().map(|it| project.folder.join(it)).chain(self.libraries.iter().cloned());
         let mut all: Vec<_> = own.iter().map(|it| (it.clone(), None)).collect();
         for library in libraries {
-            let name = listing::library_name(&library);
+            let name = listing::name(&library);
             all.extend(files::find(&[library], cargo)?.into_iter().map(|it| (it, Some(name.clone()))));
         }
         for (path, library) in all {
@@ -298,8 +302,11 @@ impl Build {
     }
 
     fn output_name(&self) -> String {
-        let stem = || self.paths.first().and_then(|path| path.file_stem());
-        let name = self.name.clone().or_else(|| stem().map(|it| it.to_string_lossy().into_owned()));
+        let stem = |path: &PathBuf| match listing::is_list(path) {
+            true => Some(listing::name(path)),
+            false => path.file_stem().map(|it| it.to_string_lossy().into_owned()),
+        };
+        let name = self.name.clone().or_else(|| stem(self.paths.first()?));
         name.unwrap_or_else(|| "plc".to_owned())
     }
 }

@@ -1,4 +1,9 @@
-//! Which files are sources, and which list others: the projects and solutions of TwinCAT.
+//! Which files are sources, and which list others: the projects and solutions of TwinCAT, and the projects of OpenPLC
+//! Editor.
+
+mod openplc;
+
+pub use openplc::project_in;
 
 use staunch_frontend::{Reference, Source};
 use std::path::{Path, PathBuf};
@@ -13,7 +18,7 @@ pub fn is_source(path: &Path) -> bool {
 
 /// Whether a file lists others.
 pub fn is_list(path: &Path) -> bool {
-    has_extension(path, &["plcproj", "sln", "tsproj", "tspproj", "xti"])
+    has_extension(path, &["plcproj", "sln", "tsproj", "tspproj", "xti"]) || openplc::is_project(path)
 }
 
 fn has_extension(path: &Path, all: &[&str]) -> bool {
@@ -21,14 +26,24 @@ fn has_extension(path: &Path, all: &[&str]) -> bool {
     extension.is_some_and(|it| all.contains(&it.as_str()))
 }
 
-/// What a library is called: as its file, project or folder is.
-pub fn library_name(path: &Path) -> String {
-    let name = if path.is_dir() { path.file_name() } else { path.file_stem() };
+/// What a library or a program is called: as its file, project or folder is. Of OpenPLC Editor each project has a folder,
+/// whose name it has.
+pub fn name(path: &Path) -> String {
+    let folder = path.parent().filter(|_| openplc::is_project(path));
+    let name = match folder {
+        Some(folder) => {
+            Path::new(".").join(folder).canonicalize().ok().and_then(|it| it.file_name().map(ToOwned::to_owned))
+        }
+        None => if path.is_dir() { path.file_name() } else { path.file_stem() }.map(ToOwned::to_owned),
+    };
     name.map_or_else(String::new, |it| it.to_string_lossy().into_owned())
 }
 
-/// The sources that a list of TwinCAT's leads to, and the lists on the way.
+/// The sources that a list leads to, and the lists on the way.
 pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
+    if openplc::is_project(path) {
+        return Ok((openplc::files(path)?, vec![path.to_owned()]));
+    }
     let mut lists = Vec::new();
     let projects = plc_projects(path, 0, &mut lists)?;
     let name = path.display();

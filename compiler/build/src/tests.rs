@@ -104,3 +104,24 @@ fn libraries_are_named_here_and_in_the_project_file() {
     }
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+#[test]
+fn a_project_of_openplc_editor_is_compiled_as_it_is() {
+    let project = r#"{ "meta": { "type": "plc-project" }, "data": { "libraries": [], "pous": [] } }"#;
+    let main = "PROGRAM main VAR x : INT AT %MW0; END_VAR x := x + 1; END_PROGRAM";
+    let files = [("tank/project.json", project), ("tank/pous/programs/main.st", main)];
+    let folder = folder("openplc", &files);
+    for source in [folder.join("tank"), folder.join("tank/project.json")] {
+        let build = if source.is_dir() { Build::new().folder(&source) } else { Build::new().file(&source) };
+        let mut cargo = cargo::Instructions::default();
+        assert_eq!(build.compile_to(&folder, &mut cargo), Ok(()), "{:?}", cargo.lines);
+        assert!(folder.join("tank.rs").is_file());
+        std::fs::remove_file(folder.join("tank.rs")).unwrap();
+        for name in ["project.json", "pous/programs/main.st"] {
+            let line = format!("cargo::rerun-if-changed={}", folder.join("tank").join(name).display());
+            assert!(cargo.lines.contains(&line), "{:?}", cargo.lines);
+        }
+        assert_eq!(build.dialect(Dialect::Codesys).compile_to(&folder, &mut cargo), Err(Failed));
+    }
+    std::fs::remove_dir_all(folder).unwrap();
+}

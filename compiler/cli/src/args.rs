@@ -121,7 +121,7 @@ pub enum Color {
 
 #[derive(Clone, Debug, Args)]
 pub struct Files {
-    /// Source files, folders, or projects of TwinCAT's (.plcproj); those of staunch.toml without one
+    /// Source files, folders, or projects (TwinCAT's .plcproj, OpenPLC Editor's project.json); those of staunch.toml without one
     #[arg(value_name = "FILE")]
     pub files: Vec<PathBuf>,
 }

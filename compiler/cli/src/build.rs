@@ -4,6 +4,7 @@ use crate::args::{Build, BuildBackend, Emit, Opt};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use crate::{REJECTED, apart, header, link, linker, output, systemd};
+use staunch_build::listing;
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_native::{Aim, Target};
@@ -115,8 +116,8 @@ fn out(session: &Session, args: &Build, target: Option<&str>) -> PathBuf {
 
 /// In the current folder, after the first source.
 fn default_name(session: &Session, args: &Build) -> PathBuf {
-    let stem = session.first.file_stem().map(|it| it.to_string_lossy().into_owned());
-    let stem = stem.filter(|it| !it.starts_with('<')).unwrap_or_else(|| "program".to_owned());
+    let stem = Some(listing::name(&session.first)).filter(|it| !it.is_empty() && !it.starts_with('<'));
+    let stem = stem.unwrap_or_else(|| "program".to_owned());
     PathBuf::from(match args.emit {
         Emit::Rust => format!("{stem}.rs"),
         Emit::Obj => format!("{stem}.o"),

@@ -19,7 +19,7 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
         return Err("no source file was found".to_owned());
     }
     for library in libraries {
-        let name = listing::library_name(library);
+        let name = listing::name(library);
         all.extend(found(core::slice::from_ref(library))?.into_iter().map(|it| (it, Some(name.clone()))));
     }
     if all.len() > usize::from(u16::MAX) {
@@ -63,6 +63,10 @@ fn collect(
 ) -> Result<(), String> {
     if path != Path::new("-") && listing::is_list(path) && !path.is_dir() {
         paths.extend(listing::sources(Path::new(&shown(path)))?.0);
+        return Ok(());
+    }
+    if let Some(project) = listing::project_in(path) {
+        paths.extend(listing::sources(Path::new(&shown(&project)))?.0);
         return Ok(());
     }
     if path == Path::new("-") || !path.is_dir() {

@@ -29,6 +29,8 @@ pub struct Session {
     pub coverage: Vec<CoveragePoint>,
     /// Where a move to another system changes a pin's name, and the new one.
     pub renamed: Vec<Fix>,
+    /// Where such a move changes how an address is written.
+    pub readdressed: Vec<Fix>,
     /// At their levels.
     pub diagnostics: Vec<Diagnostic>,
     pub compile_time: Duration,
@@ -79,7 +81,7 @@ impl Session {
     pub fn check(common: &Common, files: &Files) -> Result<u8, String> {
         let check = |sources: &Sources, options: &Options| {
             let diagnostics = staunch_frontend::check(sources, &Options { is_run: false, ..Options::clone(options) });
-            Compilation { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
+            Compilation::rejected(diagnostics)
         };
         let (session, errors) = Self::begin(common, files, "--dialect", check)?;
         if errors > 0 {
@@ -102,7 +104,7 @@ impl Session {
     ) -> Result<(Self, usize), String> {
         let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
         let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
-        let project = Project::find(folder)?.unwrap_or_default();
+        let mut project = Project::find(folder)?.unwrap_or_default();
         let named = if files.files.is_empty() { seen(&project, "files", &project.files)? } else { files.files.clone() };
         if named.is_empty() {
             return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
@@ -118,6 +120,7 @@ impl Session {
         }
         let levels = levels(common, &project)?;
         let sources = input::read(&named, &seen(&project, "libraries", &project.libraries)?)?;
+        project.dialect = project.dialect.take().or_else(|| sources.dialect().map(str::to_owned));
         let start = Instant::now();
         let options = options(common, &project)?;
         let compilation = compile(&sources, &options);
@@ -142,8 +145,20 @@ impl Session {
     /// Of sources that nothing has been said of yet.
     fn new(common: Common, project: Project, first: PathBuf, sources: Sources, compile_time: Duration) -> Self {
         let (program, tests, coverage) = (None, Vec::new(), Vec::new());
-        let (renamed, diagnostics) = (Vec::new(), Vec::new());
-        Self { common, project, first, sources, program, tests, coverage, renamed, diagnostics, compile_time }
+        let (renamed, readdressed, diagnostics) = (Vec::new(), Vec::new(), Vec::new());
+        Self {
+            common,
+            project,
+            first,
+            sources,
+            program,
+            tests,
+            coverage,
+            renamed,
+            readdressed,
+            diagnostics,
+            compile_time,
+        }
     }
 
     /// Which dialects take the sources that this one rejects, for people.
@@ -249,6 +264,7 @@ impl Session {
         self.tests = compilation.tests;
         self.coverage = compilation.coverage;
         self.renamed = compilation.renamed;
+        self.readdressed = compilation.readdressed;
         self.diagnostics = diagnostics;
         Ok(errors)
     }

@@ -416,6 +416,11 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
+    /// `x : BOOL AT %QX0.0`, as OpenPLC Editor from v4 on writes it, and an alias in place of the address.
+    pub(crate) const fn has_addresses_after_types(self) -> bool {
+        matches!(self, Self::Openplc | Self::Openplc4)
+    }
+
     /// `a += b` and the like, which SIMATIC calls a combined assignment.
     pub const fn combines_assignments(self) -> bool {
         matches!(self, Self::Siemens)

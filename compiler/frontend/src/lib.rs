@@ -22,6 +22,7 @@ mod allow;
 mod dialect;
 mod foreign;
 mod inherit;
+mod locate;
 mod log;
 mod names;
 mod options;
@@ -73,12 +74,15 @@ pub struct Compilation {
     pub coverage: Vec<CoveragePoint>,
     /// Where a move to another system changes a pin's name, and the new one, whether the lint is allowed or not.
     pub renamed: Vec<Fix>,
+    /// Where such a move changes how an address is written.
+    pub readdressed: Vec<Fix>,
 }
 
 impl Compilation {
     /// There is nothing but what was reported.
-    fn rejected(diagnostics: Vec<Diagnostic>) -> Self {
-        Self { program: None, diagnostics, tests: Vec::new(), coverage: Vec::new(), renamed: Vec::new() }
+    pub fn rejected(diagnostics: Vec<Diagnostic>) -> Self {
+        let (tests, coverage, renamed, readdressed) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Self { program: None, diagnostics, tests, coverage, renamed, readdressed }
     }
 
     /// Leaves of what was reported what a user is to see, in the order of the files.
@@ -188,9 +192,10 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
         return None;
     }
     let tests = program::tests::tests(&mut declarations, groups);
+    let readdressed = std::mem::take(&mut declarations.log.readdressed);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
-    let mut compilation = Compilation { tests, coverage, ..compilation };
+    let mut compilation = Compilation { tests, coverage, readdressed, ..compilation };
     if has_tests && !options.tests {
         // Unit tests that do not run are checked all the same.
         let mut found = run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics;
@@ -223,6 +228,7 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     files.iter().for_each(|it| log.read_pragmas(it));
     files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.combined)).for_each(|it| report_combined(it, log));
+    locate::resolve(&mut files, log);
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.nonretentive)).for_each(|it| note_nonretentive(it, log));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);

@@ -2,7 +2,7 @@
 
 use crate::dialect::Dialect;
 use crate::options::Options;
-use crate::{Code, Diagnostic, Severity, Sources, Span};
+use crate::{Code, Diagnostic, Fix, Severity, Sources, Span};
 use rustc_hash::FxHashSet;
 use staunch_ir::Location;
 
@@ -18,6 +18,8 @@ pub(crate) struct Log<'s> {
     pub asked_attributes: Vec<&'s str>,
     /// The targets of assignments that are undone as the controller starts.
     pub nonretentive: FxHashSet<Span>,
+    /// How addresses are written on a system that the program moves to.
+    pub readdressed: Vec<Fix>,
     line_cache: LineCache,
 }
 
@@ -44,6 +46,7 @@ impl<'s> Log<'s> {
             has_named_narrowing: false,
             asked_attributes: Vec::new(),
             nonretentive: FxHashSet::default(),
+            readdressed: Vec::new(),
             line_cache,
         }
     }

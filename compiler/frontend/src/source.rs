@@ -1,7 +1,7 @@
 //! Source files, and positions in them. A text may be made of pieces of a file: what it says of places is said
 //! of the file.
 
-use crate::vendor::{self, Assembly, Piece, Problem, Reference};
+use crate::vendor::{self, Assembly, Device, Piece, Problem, Reference};
 use core::sync::atomic::{AtomicUsize, Ordering};
 use staunch_runtime::Location;
 
@@ -49,6 +49,7 @@ struct Origin {
     /// The piece that was asked for last.
     piece: Hint,
     problems: Vec<Problem>,
+    device: Option<Device>,
 }
 
 /// Where something was found in a list that is in order. The next question is most often about the same place, or the next.
@@ -113,6 +114,8 @@ pub struct Sources {
     defined: Vec<String>,
     /// Its name.
     project: Option<String>,
+    /// What a project of OpenPLC Editor says of its device.
+    device: Option<Device>,
 }
 
 impl Source {
@@ -139,10 +142,10 @@ impl Source {
     pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
         let file = Self::decoded(path, bytes);
         match vendor::read_named(&file.path, &file.text) {
-            Some(Assembly { text, pieces, problems }) => {
+            Some(Assembly { text, pieces, problems, device }) => {
                 let path = file.path.clone();
                 Self {
-                    origin: Some(Box::new(Origin { file, pieces, piece: Hint::default(), problems })),
+                    origin: Some(Box::new(Origin { file, pieces, piece: Hint::default(), problems, device })),
                     ..Self::new(path, text)
                 }
             }
@@ -164,7 +167,13 @@ impl Source {
         let message = message(file.path.rsplit(['/', '\\']).next().unwrap_or_default());
         let problems = vec![Problem { at: 0, trouble, message, help: None }];
         let pieces = vec![Piece { start: 0, at: 0, end: 1, verbatim: true }];
-        Self { origin: Some(Box::new(Origin { file: file.clone(), pieces, piece: Hint::default(), problems })), ..file }
+        let origin = Origin { file: file.clone(), pieces, piece: Hint::default(), problems, device: None };
+        Self { origin: Some(Box::new(origin)), ..file }
+    }
+
+    /// Whether a file is the `project.json` of a project of OpenPLC Editor: it says so of itself.
+    pub fn is_openplc_project(file: &[u8]) -> bool {
+        vendor::is_openplc_project(&Self::decoded("", file).text)
     }
 
     /// The files that a project of TwinCAT's lists, as it writes them.
@@ -410,6 +419,16 @@ impl Sources {
         if source.is_of_library() { &[] } else { &self.defined }
     }
 
+    /// The device of a project of OpenPLC Editor, where the files are of one.
+    pub(crate) const fn device(&self) -> Option<&Device> {
+        self.device.as_ref()
+    }
+
+    /// The name of the dialect that a project among the files is compiled by, unless the user names another.
+    pub fn dialect(&self) -> Option<&'static str> {
+        self.device.as_ref().map(Device::dialect)
+    }
+
     /// Takes the name of the project, the first of which is told.
     pub fn name_project(&mut self, name: Option<String>) {
         self.project = self.project.take().or(name);
@@ -440,6 +459,10 @@ impl Sources {
 
     /// Adds a file; its number is its position.
     pub fn add(&mut self, source: Source) {
+        let device = source.origin.as_ref().and_then(|it| it.device.clone());
+        if let Some(device) = device.filter(|_| !source.is_of_library()) {
+            self.device.get_or_insert_default().merge(device);
+        }
         self.files.push(source);
     }
 

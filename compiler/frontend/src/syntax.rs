@@ -54,7 +54,7 @@ use crate::{
     source::{Sources, Span},
 };
 
-pub(crate) use diagnostics::{controller_service, reserved};
+pub(crate) use diagnostics::{address_without_sign, controller_service, reserved};
 use parser::{Extra, State};
 pub(crate) use pragma::attribute;
 
@@ -87,7 +87,7 @@ pub fn parse_with<'s>(
     let mut state = State::new(file, text, &tokens, namespace::file(file, text));
     let items = parse_items(&mut state);
     let (mut found, braces, regions, bindings) = (state.diagnostics, state.braces, state.regions, state.bindings);
-    let (combined, nonretentive) = (state.combined, state.nonretentive);
+    let (combined, nonretentive, late_addresses) = (state.combined, state.nonretentive, state.late_addresses);
     found.append(&mut tokens.diagnostics);
     tokens.pragmas.retain(|it| !braces.contains(&it.span));
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
@@ -103,6 +103,7 @@ pub fn parse_with<'s>(
         undecided,
         reserved,
         combined,
+        late_addresses,
         nonretentive,
     }
 }

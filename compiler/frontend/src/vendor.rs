@@ -2,9 +2,12 @@
 //! order of the language, with what of the file is no Structured Text.
 
 mod assembly;
+mod device;
 mod exp;
+mod json;
 mod l5x;
 mod listing;
+mod openplc;
 mod plcopen;
 mod scl;
 mod twincat;
@@ -12,8 +15,10 @@ mod unit;
 mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
+pub use device::Device;
 pub(crate) use l5x::controller_service;
 pub use listing::{Reference, definitions, listed, project_name, references};
+pub use openplc::is_project as is_openplc_project;
 
 use xml::Reader;
 
@@ -35,10 +40,11 @@ pub fn read(text: &str) -> Option<Assembly> {
     }
 }
 
-/// The Structured Text in a file that is called as a source of SCL is.
+/// The Structured Text in a file that is called as a source of SCL is, or as a file of OpenPLC Editor.
 pub fn read_named(path: &str, text: &str) -> Option<Assembly> {
     let extension = path.rsplit_once('.').map_or("", |it| it.1);
-    read(text).or_else(|| extension.eq_ignore_ascii_case("scl").then(|| scl::read(text)))
+    let named = || extension.eq_ignore_ascii_case("scl").then(|| scl::read(text));
+    openplc::read(path, text).or_else(|| read(text)).or_else(named)
 }
 
 /// Whether a file of this name is one of TwinCAT 3's.

@@ -80,7 +80,8 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     };
     if let Some(path) = &args.write {
         let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
-        migrated::write(&from, path, sources, &to.renamed, args.to.dialect)?;
+        let changes: Vec<_> = to.renamed.iter().chain(&to.readdressed).cloned().collect();
+        migrated::write(&from, path, sources, &changes, args.to.dialect)?;
     }
     let sources = rewritten.as_ref().map_or(&from.sources, |it| &it.sources);
     let own = side_by_side(&report, [program, moved], &renamed)?;

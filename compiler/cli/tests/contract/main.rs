@@ -12,6 +12,7 @@ mod external;
 mod lists;
 mod mutants;
 mod near;
+mod openplc;
 mod page;
 #[cfg(unix)]
 mod power;

@@ -134,7 +134,11 @@ impl<'s> Declarations<'s> {
             }
             None => {
                 let address = self.address(declared)?;
-                Some(self.new_storage(address, resolved, pou.map_or("Globals", |it| it.text), name))
+                let place = self.new_storage(address, resolved, pou.map_or("Globals", |it| it.text), name);
+                if let Some(Storage::Hidden(at)) = self.addresses.storage.get(&address).copied() {
+                    self.synthetic.document(at, decl.doc.clone());
+                }
+                Some(place)
             }
         };
         if place.is_some() {

@@ -206,18 +206,23 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
         names.push(name);
         names.extend(more);
     }
-    let (address, swapped) = input.parse(address().then(foreign_types::type_before_name(names)))?;
+    let (address, swapped) = input.parse(address(!nameless).then(foreign_types::type_before_name(names)))?;
     if nameless {
         names.extend(address);
     }
-    let (((ty, construction), edge), initial) = match swapped {
+    let (((ty, construction), (edge, late)), initial) = match swapped {
         Some(named) => {
             *names = named.names;
-            (((named.ty, None), None), input.parse(optional_initial().then_ignore(end()))?)
+            (((named.ty, None), (None, None)), input.parse(optional_initial().then_ignore(end()))?)
         }
         None => input.parse(typed().then(optional_initial()).then_ignore(end()))?,
     };
     let doc = input.doc(first);
+    if let Some(late) = late {
+        let problem = diagnostics::address_after_type(input, names.last(), &ty, late);
+        input.state().late_addresses.push((late.1, problem));
+    }
+    let address = address.or(late.map(|it| it.1));
     let declared = VarDecl::new(std::mem::take(names), ty, start.to(input.last()));
     Ok(VarDecl { address, edge, construction, initial, instance_path, starts_at_calls, doc, ..declared })
 }
@@ -228,17 +233,20 @@ fn declared_names<'t, 's: 't>() -> impl Rule<'t, 's, (Name<'s>, Vec<Name<'s>>)> 
     first.then(token(Kind::Comma).ignore_then(name()).repeated().collect())
 }
 
-type Typed<'s> = ((TypeSpec<'s>, Option<Box<Construction<'s>>>), Option<(Edge, Span)>);
+/// What may be after a type: an edge, and an AT with its address.
+type After<'s> = (Option<(Edge, Span)>, Option<(Span, Name<'s>)>);
+type Typed<'s> = ((TypeSpec<'s>, Option<Box<Construction<'s>>>), After<'s>);
 
-/// `: BOOL R_EDGE`
+/// `: BOOL R_EDGE`; in OpenPLC Editor `: BOOL AT %QX0.0`, too
 fn typed<'t, 's: 't>() -> impl Rule<'t, 's, Typed<'s>> {
     // These two are names everywhere else.
     let rising = word("R_EDGE").map(|span| (Edge::Rising, span));
     let falling = word("F_EDGE").map(|span| (Edge::Falling, span));
     let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_declaration());
-    let edge = rising.or(falling).or_not().then_ignore(foreign_types::address_after_type().or_not());
-    let usual = ahead(|input| matches!(input.kind(), Kind::Semicolon | Kind::Assign)).to(None);
-    colon.ignore_then(type_spec().then(rule(construction))).then(usual.or(edge))
+    let late = token(Kind::At).then(direct_address().or(alias()));
+    let after = rising.or(falling).or_not().then(late.or_not());
+    let usual = ahead(|input| matches!(input.kind(), Kind::Semicolon | Kind::Assign)).to((None, None));
+    colon.ignore_then(type_spec().then(rule(construction))).then(usual.or(after))
 }
 
 /// `(5)` after the type of an instance, `[(5), (6)]` after that of an array of them.
@@ -256,14 +264,28 @@ fn construction<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Box<Constructio
     Ok(Some(Box::new(Construction { lists, is_of_elements, span: start.to(input.last()) })))
 }
 
-/// `AT %IX0.0`; in a structure `AT %B4` and `AT %X0.3`.
-fn address<'t, 's: 't>() -> impl Rule<'t, 's, Option<Name<'s>>> {
+fn direct_address<'t, 's: 't>() -> impl Rule<'t, 's, Name<'s>> {
+    rule(|input| {
+        let span = input.expect(Kind::Address)?;
+        Ok(Name { text: input.text(span), span })
+    })
+}
+
+/// The alias of an address, as OpenPLC Editor has them.
+fn alias<'t, 's: 't>() -> impl Rule<'t, 's, Name<'s>> {
+    let ends = |input: &mut In<'t, '_, 's>| matches!(input.kind_ahead(1), Kind::Colon | Kind::Semicolon | Kind::Assign);
+    ahead(ends).ignore_then(name())
+}
+
+/// `AT %IX0.0`; in a structure `AT %B4` and `AT %X0.3`. What has no name of its own has no alias.
+fn address<'t, 's: 't>(has_alias: bool) -> impl Rule<'t, 's, Option<Name<'s>>> {
     let relative = token(Kind::Part).then(token(Kind::Dot).ignore_then(token(Kind::Integer)).or_not());
     let relative = relative.map(|(start, end)| end.map_or(start, |it| start.to(it)));
     let place = ahead(|input| input.kind() == Kind::Part).ignore_then(relative).or(token(Kind::Address));
     let direct = place.map_with(|span, extra| Some(Name { text: extra.state().slice(span), span }));
     let unsigned = foreign_types::address_without_sign().to(None);
-    token(Kind::At).ignore_then(unsigned.or(direct)).or_not().map(Option::flatten)
+    let alias = ahead(move |_| has_alias).ignore_then(alias()).map(Some);
+    token(Kind::At).ignore_then(alias.or(unsigned).or(direct)).or_not().map(Option::flatten)
 }
 
 /// The `;` of a declaration, or what is taken for it.

@@ -259,13 +259,6 @@ pub fn address_without_sign<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     })
 }
 
-/// `x : BOOL AT %QX0.0;`
-pub fn address_after_type<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
-    reported(token(Kind::At).then(token(Kind::Address)), |(at, address), state, _| {
-        state.report(diagnostics::address_after_type(at.to(address)));
-    })
-}
-
 /// `FUNCTION f INT`: a result type without its `:`.
 pub fn no_colon_in_head<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     rule(|input| {

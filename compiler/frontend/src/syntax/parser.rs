@@ -134,6 +134,8 @@ pub struct State<'t, 's> {
     pub bindings: Vec<Binding<'s>>,
     /// What is reported of `a += b`, if the dialect does not have it.
     pub combined: Vec<Diagnostic>,
+    /// The address in `x : BOOL AT %QX0.0`, and what is reported if the dialect does not have it.
+    pub late_addresses: Vec<(Name<'s>, Diagnostic)>,
     /// The targets of `a [:=] b`, which Logix has.
     pub nonretentive: Vec<Span>,
     pub regions: Vec<Region<'s>>,
@@ -169,6 +171,7 @@ impl<'t, 's> State<'t, 's> {
             nested: Vec::new(),
             bindings: Vec::new(),
             combined: Vec::new(),
+            late_addresses: Vec::new(),
             nonretentive: Vec::new(),
             regions: vec![whole],
             around: vec![0],

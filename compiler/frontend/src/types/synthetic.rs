@@ -27,6 +27,11 @@ impl<'s> Synthetic<'s> {
         self.declared[at]
     }
 
+    /// Gives the comment of the declaration that a field was added for.
+    pub fn document(&mut self, at: usize, doc: Option<String>) {
+        self.fields[at].doc = doc;
+    }
+
     pub fn fields(&self) -> Vec<Field> {
         self.fields.clone()
     }

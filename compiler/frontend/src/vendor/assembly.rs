@@ -1,5 +1,6 @@
 //! A text that is made of pieces of a file: each knows where in the file it is from.
 
+use super::device::Device;
 use core::ops::Range;
 
 /// A part of the text.
@@ -50,6 +51,8 @@ pub struct Assembly {
     /// In the order of the text; they cover all of it.
     pub pieces: Vec<Piece>,
     pub problems: Vec<Problem>,
+    /// What a project of OpenPLC Editor says of its device.
+    pub device: Option<Device>,
 }
 
 /// A part of a file's text, or what it stands for.

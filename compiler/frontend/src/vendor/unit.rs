@@ -78,7 +78,7 @@ impl<'t> Unit<'t> {
                 self.close_comments(file, chunks, "body", out);
             }
             Body::Other(language, place) => {
-                let message = format!("the body of `{}` is {language}, which is no text", self.name);
+                let message = format!("the body of `{}` is {language}, not Structured Text", self.name);
                 out.problem(Trouble::OtherLanguage, message, place);
             }
         }

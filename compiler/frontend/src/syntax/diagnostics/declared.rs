@@ -1,6 +1,7 @@
 //! Declarations and units that are written as in another language, or in another place.
 
 use crate::{
+    ast::{Name, TypeSpec},
     diagnostic::{Code, Diagnostic},
     lex::Kind,
     source::Span,
@@ -134,9 +135,20 @@ pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
         .fix(span, format!("%{text}"))
 }
 
-/// `x : BOOL AT %QX0.0;`
-pub fn address_after_type(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0409, span, "the address of a variable is written before its type")
-        .label("expected before the `:`")
-        .help("write `name AT %QX0.0 : BOOL;`")
+/// `x : BOOL AT %QX0.0;`, of which this is reported where the dialect does not have it.
+pub fn address_after_type<'s>(
+    input: &mut In<'_, '_, 's>,
+    name: Option<&Name<'s>>,
+    ty: &TypeSpec<'s>,
+    (at, address): (Span, Name<'s>),
+) -> Diagnostic {
+    let (span, ty) = (at.to(address.span), input.text(ty.span));
+    let problem = Diagnostic::new(Code::E0409, span, "the address of a variable is written before its type")
+        .label("expected before the `:`");
+    match name {
+        Some(name) => problem
+            .help(format!("write `{} AT {} : {ty}`", name.text, address.text))
+            .fix(Span { start: name.span.end, ..span }, format!(" AT {} : {ty}", address.text)),
+        None => problem.help("write `name AT %QX0.0 : BOOL;`"),
+    }
 }

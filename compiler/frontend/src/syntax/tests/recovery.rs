@@ -271,7 +271,7 @@ fn habits_of_other_languages() {
          PROGRAM g3() // E0020
          END_PROGRAM
          FUNCTION_BLOCK h : INT // E0001
-         VAR a AT IX0.0 : BOOL; b : BOOL AT %QX0.0; c; d, e; END_VAR // E0409 E0409 E0001 E0001
+         VAR a AT IX0.0 : BOOL; b : BOOL AT %QX0.0; c; d, e; END_VAR // E0409 E0001 E0001
          VAR f : {A, B}; g : ARRAY[1..2] OF INT := {1, 2}; END_VAR // E0020 E0020
          TYPE T : INT; END_TYPE // E0001
          VAR_RETAIN i : INT; END_VAR // E0018

@@ -131,8 +131,8 @@ fn routine<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) ->
 
 fn language(element: &str) -> Option<&'static str> {
     match element {
-        "FBDContent" => Some("a function block diagram (FBD), which is no text"),
-        "SFCContent" => Some("a sequential function chart (SFC), which is no text"),
+        "FBDContent" => Some("a function block diagram (FBD), not Structured Text"),
+        "SFCContent" => Some("a sequential function chart (SFC), not Structured Text"),
         "EncodedData" => Some("protected: its source is encrypted"),
         _ => None,
     }
@@ -175,7 +175,7 @@ fn rungs(file: &str, reader: &mut Reader<'_>, place: Range<usize>) -> Result<Bod
             None => break,
         }
     }
-    Ok(if only_calls { Body::Text(chunks) } else { Body::Other("a ladder diagram (RLL), which is no text", place) })
+    Ok(if only_calls { Body::Text(chunks) } else { Body::Other("a ladder diagram (RLL), not Structured Text", place) })
 }
 
 /// The calls of a rung that has nothing else, in their order: `JSR(Fill,0)JSR(Drain,0);`, `[JSR(Fill,0) ,JSR(Drain,0) ];`,
