@@ -275,16 +275,16 @@ impl<'s> Checker<'_, 's> {
             _ => {}
         });
         let Some(name) = first else { return };
-        let message = format!("`{}` is always TRUE here: the body runs only while it is", name.text);
+        let message = format!("`{}` is always TRUE here: the body runs only while it is TRUE", name.text);
         self.report(
             Diagnostic::new(Code::W0526, name.span, message)
-                .label("a call with FALSE leaves the whole body out")
+                .label("a call with FALSE skips the whole body")
                 .help("give the input another name if the body is to run in each call"),
         );
     }
 }
 
-/// A POU's own parameter of this name, if it is a BOOL.
+/// A POU's own parameter with this name, if it is a BOOL.
 fn own<'a, 's>(signature: &'a Signature<'s>, name: &str) -> Option<&'a Formal<'s>> {
     signature.formals.iter().find(|it| it.name.text.eq_ignore_ascii_case(name) && it.resolved.ty == Type::BOOL)
 }

@@ -73,7 +73,7 @@ pub fn read(text: &str) -> Assembly {
             until = Some(core::slice::from_ref(end));
         } else if let Some((_, language)) = BODIES.iter().find(|it| it.0 == word) {
             take(&mut out, text, from..place.start);
-            out.problem(Trouble::OtherLanguage, format!("this body is {language}, which is no text"), &place);
+            out.problem(Trouble::OtherLanguage, format!("this body is {language}, which is not text"), &place);
             until = Some(&ENDS);
         } else if is_first && is_instruction(line) {
             // Its bodies begin with no word of their own.

@@ -19,7 +19,7 @@ pub struct Routine<'t> {
 #[derive(Debug)]
 pub enum Body {
     Text(Vec<Chunk>),
-    /// Why it is no text.
+    /// Why it is not text.
     Other(&'static str, Range<usize>),
 }
 
@@ -131,8 +131,8 @@ fn routine<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) ->
 
 fn language(element: &str) -> Option<&'static str> {
     match element {
-        "FBDContent" => Some("a function block diagram (FBD), which is no text"),
-        "SFCContent" => Some("a sequential function chart (SFC), which is no text"),
+        "FBDContent" => Some("a function block diagram (FBD), which is not text"),
+        "SFCContent" => Some("a sequential function chart (SFC), which is not text"),
         "EncodedData" => Some("protected: its source is encrypted"),
         _ => None,
     }
@@ -175,7 +175,7 @@ fn rungs(file: &str, reader: &mut Reader<'_>, place: Range<usize>) -> Result<Bod
             None => break,
         }
     }
-    Ok(if only_calls { Body::Text(chunks) } else { Body::Other("a ladder diagram (RLL), which is no text", place) })
+    Ok(if only_calls { Body::Text(chunks) } else { Body::Other("a ladder diagram (RLL), which is not text", place) })
 }
 
 /// The calls of a rung that has nothing else, in their order: `JSR(Fill,0)JSR(Drain,0);`, `[JSR(Fill,0) ,JSR(Drain,0) ];`,
@@ -224,7 +224,7 @@ fn lines(reader: &mut Reader<'_>) -> Result<Vec<Chunk>, Broken> {
                 chunks.extend(reader.content("")?);
                 chunks.push(Chunk::words("\n", &reader.last()));
             }
-            // What is between the lines is no part of them.
+            // Text between the lines is not part of them.
             Some(Part::Text(_)) => {}
             Some(Part::Close) | None => return Ok(chunks),
         }
