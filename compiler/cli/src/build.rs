@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     if args.names && args.emit != Emit::Rust {
-        return Err("`--names` goes with `--emit rust`; `--emit map` says where each variable lies".to_owned());
+        return Err("`--names` goes with `--emit rust`; `--emit map` gives the place of each variable".to_owned());
     }
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let out = args.output.clone().unwrap_or_else(|| default_name(session, args));
@@ -51,8 +51,8 @@ fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) ->
     match args.backend {
         BuildBackend::Native => native(program, args.emit, target, out),
         BuildBackend::Rust if !program.externals().is_empty() => Err(
-            "what is `{external}` is implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
-             and implement it in C"
+            "`{external}` POUs are implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
+             and implement them in C"
                 .to_owned(),
         ),
         BuildBackend::Rust => rust(program, args.emit, target, out),

@@ -34,7 +34,7 @@ pub struct World {
     pub unfollowed: Vec<String>,
     /// Values that the documents of the two systems leave open, and that the programs may come to.
     pub open: Vec<String>,
-    /// What is accepted, where the search goes on past it.
+    /// What is accepted, if the search continues past it.
     pub tolerance: Option<Tolerance>,
 }
 
