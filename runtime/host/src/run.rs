@@ -77,9 +77,9 @@ pub struct Options {
     pub realtime: bool,
     /// Prints nothing but errors and the trace.
     pub quiet: bool,
-    /// Prints the last scans as a table, if there is no trace.
+    /// Prints the last scans as a table, unless a trace is written.
     pub table: bool,
-    /// Prints what the run came to as JSON, in place of the table.
+    /// Prints the result of the run as JSON, in place of the table.
     pub json: bool,
 }
 
@@ -115,7 +115,7 @@ impl Options {
         }
     }
 
-    /// On standard output, but for a trace that is there.
+    /// On standard output, unless a trace is written there.
     fn print_json(&self, object: &str) -> Result<(), Error> {
         let line = format!("{object}\n");
         let written = match self.trace.as_deref().is_some_and(|it| it.as_os_str() == "-") {
@@ -136,7 +136,7 @@ impl Summary {
             elapsed.as_nanos()
         );
         if let Some(RealTime { overruns, shortest, longest, .. }) = real {
-            // Where nothing ran there is no shortest scan.
+            // If nothing ran, no scan is the shortest.
             let shortest = if *shortest == Duration::MAX { 0 } else { shortest.as_nanos() };
             let longest = longest.as_nanos();
             text += &format!(",\"overruns\":{overruns},\"shortest_ns\":{shortest},\"longest_ns\":{longest}");
@@ -148,7 +148,7 @@ impl Summary {
     }
 }
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Summary {
     pub scans: u64,
@@ -176,7 +176,7 @@ pub struct RealTime {
 pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Summary, Error> {
     let running = running(map, options.program.as_deref())?;
     if options.cycle.is_some_and(|it| it <= 0) {
-        return Err(Error::Usage("the cycle is a time above zero".to_owned()));
+        return Err(Error::Usage("the cycle must be a time above zero".to_owned()));
     }
     options.trace.as_deref().map_or(Ok(()), trace::check_name)?;
     options.keep_apart().map_err(Error::Usage)?;
@@ -188,7 +188,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     let schedule = Schedule::new(map, &running, options.cycle);
     let overlays = match options.overlay.is_empty() || options.trace.as_deref().is_some_and(trace::is_picture) {
         true => overlays(&columns, &options.overlay),
-        false => Err("it is for a picture: write --trace OUT.svg".to_owned()),
+        false => Err("it is only for a picture: write --trace OUT.svg".to_owned()),
     };
     let overlays = overlays.map_err(|it| Error::Usage(format!("--overlay: {it}")))?;
     let subject = Subject { map, columns, overlays, title: title(map, &running), cycle: schedule.shortest_period() };
@@ -278,7 +278,7 @@ struct Runner<'a> {
     retention: Option<Retention>,
     start: Start,
     messages: Messages,
-    /// The program's clock at this run's time 0: a retained timer goes on where it stood.
+    /// The program's clock at this run's time 0: a retained timer continues where it stopped.
     epoch: Time,
     out: Output,
     clock: Option<Clock>,
@@ -408,13 +408,13 @@ impl Runner<'_> {
         Ok(())
     }
 
-    /// What an output came to. A run in real time controls a machine: it goes on without an output that cannot be
+    /// What an output came to. A run in real time controls a machine: it continues without an output that cannot be
     /// written, and says so.
     fn needed<T>(&self, written: Result<T, Error>) -> Result<Option<T>, Error> {
         match written {
             Ok(it) => Ok(Some(it)),
             Err(error) if self.options.realtime => {
-                crate::error::tell(format_args!("warning: {error}; the program runs on without it"));
+                crate::error::tell(format_args!("warning: {error}; the program continues without it"));
                 Ok(None)
             }
             Err(error) => Err(error),
@@ -426,7 +426,7 @@ impl Runner<'_> {
         for message in self.messages.take(self.map, self.machine.state()) {
             if self.options.json {
                 let printed = self.options.print_json(&message.json(scan));
-                // In real time, who reads no objects is told of that at the end.
+                // In real time, users who do not read objects get a warning at the end.
                 if !self.options.realtime {
                     printed?
                 }
@@ -517,7 +517,7 @@ impl Runner<'_> {
         };
         let saved = self.retention.as_mut().map_or(Ok(()), |it| it.finish(ending));
         if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
-            crate::error::tell(format_args!("note: no scan lies between --from and --to"));
+            crate::error::tell(format_args!("note: no scan is between --from and --to"));
         }
         let written = self.show(subject);
         let written = self.needed(written).map(drop);
@@ -553,11 +553,11 @@ impl Runner<'_> {
         let plural = if real.overruns == 1 { "" } else { "s" };
         write!(
             out,
-            "{} in real time, {} overrun{plural}; a scan took {min} at least, ",
+            "{} in real time, {} overrun{plural}; a scan took at least {min}, ",
             rounded(elapsed),
             real.overruns
         )?;
-        writeln!(out, "{mean} on average, {max} at most")
+        writeln!(out, "{mean} on average, at most {max}")
     }
 }
 

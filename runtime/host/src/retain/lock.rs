@@ -33,7 +33,7 @@ pub(super) fn hold(file: &File) -> io::Result<()> {
     match (locked, io::Error::last_os_error()) {
         (0, _) => Ok(()),
         (_, error) if error.kind() == io::ErrorKind::WouldBlock => Err(io::Error::other(
-            "another process keeps its retained variables there: end it, or give this one a file of its own",
+            "another process keeps its retained variables there: end it, or give this one its own file",
         )),
         // Some network file systems have no locks.
         _ => Ok(()),
