@@ -36,7 +36,7 @@ pub enum Part {
     /// A comparison of durations with one that is not a whole number of binary fractions of a second, or of two variables;
     /// and a literal with decimals of minutes, hours or days.
     ComparedTimes,
-    /// A number with a fraction that a REAL does not hold exactly, beside a REAL.
+    /// A number with a fraction that a REAL does not hold exactly, in an operation with a REAL.
     FractionBesideReal,
 }
 
@@ -62,7 +62,7 @@ impl Part {
             Self::Subrange => "a value outside of a subrange",
             Self::DivisionByZero => "integer division by 0",
             Self::ComparedTimes => "a comparison of TIMEs",
-            Self::FractionBesideReal => "a number with a fraction beside a REAL",
+            Self::FractionBesideReal => "a number with a fraction in an operation with a REAL",
         }
     }
 }
@@ -90,7 +90,7 @@ impl Use {
     }
 }
 
-/// What a program uses, each with the first place in its source. What was a constant expression is among it.
+/// What a program uses, each with the first place in its source. Operations of constant expressions are included.
 #[derive(Clone, Debug, Default)]
 pub struct Uses(BTreeMap<Use, Location>);
 
