@@ -109,7 +109,7 @@ impl Printed {
         let options = staunch_rust::Options::default();
         let map = staunch_ir::symbols::map_text(program, &Layout::new(program));
         let glue = staunch_rust::emit_glue(program, "super::code", &map, &options);
-        // Many programs are in one crate: their entry points are told apart by their modules.
+        // Many programs are in one crate: their entry points are distinguished by their modules.
         Self { code: staunch_rust::emit(program, &options), glue: glue.replace("#[unsafe(no_mangle)]\n", "") }
     }
 }

@@ -119,7 +119,7 @@ fn every_mutant() {
         // SAFETY: no other thread has a lock that what is asked needs: the harness waits for this one.
         let child = unsafe { fork() };
         if child == 0 {
-            // SAFETY: the limit is there to be read. What finds no end asks for no end of memory, too.
+            // SAFETY: the limit can be read. A program that never ends may also ask for memory without end.
             unsafe { setrlimit(ADDRESS_SPACE, &raw const MEMORY) };
             mutant::turn_on(number);
             let is_seen = asked.iter().any(|it| !answers_in_time(&questions[*it]));
@@ -136,14 +136,14 @@ fn every_mutant() {
 fn answers_in_time(question: &Question) -> bool {
     let seconds = i64::try_from(question.takes.as_secs() * 20).unwrap_or(60) + 10;
     let timer = [0, 0, seconds, 0];
-    // SAFETY: the time is there to be read. What finds no end is ended by the signal.
+    // SAFETY: the time can be read. A program that never ends is ended by the signal.
     unsafe { setitimer(COMPUTED, &raw const timer, std::ptr::null_mut()) };
     question.answer()
 }
 
 fn wait_for_one(running: &mut BTreeMap<i32, String>) {
     let mut status = 0;
-    // SAFETY: `status` is there to be written to.
+    // SAFETY: `status` can be written.
     let child = unsafe { waitpid(-1, &raw mut status, 0) };
     let Some(shown) = running.remove(&child) else { return };
     println!("{}: {shown}", if status == 0 { "survives" } else { "dies" });

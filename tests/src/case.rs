@@ -1,11 +1,11 @@
-//! A golden case: a program, and beside it the files that say what is pinned.
+//! A golden case: a program, and next to it the files that say what is pinned.
 
 use staunch_frontend::{Compilation, Dialect, Options, Source, Sources};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What a file beside a case pins.
+/// What a file next to a case pins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Pin {
     /// The typed intermediate representation, printed.
@@ -134,7 +134,7 @@ pub fn discover(root: &Path) -> (Vec<Case>, Vec<String>) {
         }
     }
     let unpinned = cases.values().filter(|it| it.pins.is_empty());
-    problems.extend(unpinned.map(|it| format!("{}.st pins nothing: add a file beside it", it.name)));
+    problems.extend(unpinned.map(|it| format!("{}.st pins nothing: add a file next to it", it.name)));
     (cases.into_values().collect(), problems)
 }
 

@@ -35,7 +35,7 @@ impl Executor {
             Self::Rust => {
                 let text = map_text(program, Leaves::new(program).layout());
                 let machine = generated::machine(module, &text);
-                Box::new(machine.ok_or("there is no generated Rust of this program: is the build up to date?")?)
+                Box::new(machine.ok_or("this program has no generated Rust: is the build up to date?")?)
             }
             Self::Native => {
                 let jit = Jit::new(program).map_err(|error| error.to_string())?;
@@ -115,13 +115,13 @@ pub struct Outcome {
     pub states: Vec<Vec<(String, String)>>,
 }
 
-/// What a run needs beside its table.
+/// What a run needs in addition to its table.
 #[derive(Clone, Debug, Default)]
 pub struct Settings {
     /// As `--cycle` takes it.
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
-    /// For each scan, whether the program is told that it is the first; else the host decides.
+    /// For each scan, whether the program gets it as the first; else the host decides.
     pub first: Option<Vec<bool>>,
 }
 

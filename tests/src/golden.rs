@@ -1,4 +1,4 @@
-//! What the compiler makes of a case, and what is pinned beside it.
+//! What the compiler makes of a case, and what is pinned next to it.
 
 use crate::case::{Case, Pin};
 use crate::difference;
@@ -27,7 +27,7 @@ pub fn check_on(case: &Case, executors: &[Executor]) -> Result<(), String> {
     if differences.is_empty() { Ok(()) } else { Err(differences) }
 }
 
-/// Rewrites the files beside a case and returns what changed; where anything is wrong, nothing.
+/// Rewrites the files next to a case and returns what changed; where anything is wrong, nothing.
 pub fn bless(case: &Case) -> Result<String, String> {
     let mut changes = String::new();
     for (pin, text) in actual(case, &Executor::ALL)? {

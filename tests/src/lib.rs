@@ -1,5 +1,5 @@
 //! Golden cases, counter vectors and agreement of the three executors: interpreter, generated
-//! Rust and native code must do the same, and what the files beside a case say.
+//! Rust and native code must do the same, and what the files next to a case say.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod case;

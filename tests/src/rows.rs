@@ -79,7 +79,7 @@ fn class_of(signature: &Signature) -> Class {
     }
 }
 
-/// Whether what is of no type of the class is taken all the same, as docs/semantics.md says.
+/// Whether a value of a type outside the class is still accepted, as docs/semantics.md says.
 fn is_allowed(class: Class, name: &str, ty: Taken) -> bool {
     let own = ty.class();
     match class {

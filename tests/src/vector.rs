@@ -226,7 +226,7 @@ impl<'j> Table<'j> {
     }
 }
 
-/// What is among a row's inputs without being one. `CTU`, the rung, is told from pins by its
+/// What is among a row's inputs without being one. `CTU`, the rung, is distinguished from pins by its
 /// small letters.
 fn is_event(name: &str) -> bool {
     matches!(name, "ctu" | "ctd" | "res" | "prescan" | "restart" | "firstscan")

@@ -100,7 +100,7 @@ fn allowed(edges: &[&str], name: &str) -> bool {
 fn crates_depend_as_the_design_says() {
     let found = edges(&metadata());
     for (name, allowed_edges) in EDGES {
-        let named = found.get(*name).unwrap_or_else(|| panic!("there is no crate {name}"));
+        let named = found.get(*name).unwrap_or_else(|| panic!("the crate {name} does not exist"));
         let others: Vec<_> = named.iter().filter(|it| !allowed(allowed_edges, it)).collect();
         assert!(others.is_empty(), "{name} may not depend on {others:?}");
     }
@@ -110,7 +110,7 @@ fn crates_depend_as_the_design_says() {
             || it.starts_with(EXAMPLES)
     };
     let unknown: Vec<_> = found.keys().filter(|it| !known(it)).collect();
-    assert!(unknown.is_empty(), "{unknown:?} stand in no rule");
+    assert!(unknown.is_empty(), "{unknown:?} are in no rule");
 }
 
 #[test]
@@ -220,7 +220,7 @@ fn list(folder: &Path, paths: &mut Vec<PathBuf>) {
     }
 }
 
-/// What other files include as text is no module.
+/// A file that others include as text is not a module.
 const INCLUDED: [&str; 1] = ["compiler/rust/tests/support/show.rs"];
 
 #[test]

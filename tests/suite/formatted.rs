@@ -34,7 +34,7 @@ fn most_functions_are_laid_out_by_rustfmts_rules() {
     let (cases, _) = case::discover(&cases());
     let texts = cases.iter().filter_map(|it| emitted(it, false));
     let count = |text: &str, word: &str| text.matches(word).count();
-    // What is no function is passed over always: a macro's call, and the table of objects.
+    // Items that are not functions are always ignored: a macro's call, and the table of objects.
     let others = ["#[rustfmt::skip]\nreference::shared", "#[rustfmt::skip]\nconst "];
     let (skipped, functions) = texts.fold((0, 0), |(skipped, functions), text| {
         let no_functions: usize = others.iter().map(|it| count(&text, it)).sum();

@@ -122,7 +122,7 @@ fn reading_stops_after_many_errors() {
     assert!(codes.contains(&Code::E0030) && codes.len() < 110, "{} diagnostics", codes.len());
 }
 
-/// To let go of what was checked changes nothing of what is said.
+/// Dropping the bodies that were checked changes no diagnostics.
 #[test]
 fn check_says_what_compile_says() {
     let (cases, _) = case::discover(&cases());

@@ -194,7 +194,7 @@ fn expand(before: &str, text: &str, paths: &mut Vec<String>) -> usize {
             return at + 1;
         }
         let taken = expand(&path, &text[at..], paths);
-        // `as name`, or what is no path.
+        // `as name`, or text that is not a path.
         let rest = text[at + taken..].find([',', '}']).unwrap_or(text.len() - at - taken);
         at += taken + rest;
         if at >= text.len() {

@@ -66,7 +66,7 @@ impl Example {
         let text: String = lines.map(|it| repeated(it.strip_prefix("    ").unwrap_or(it))).collect();
         let dialect = |word: &str| {
             let name = heading.split_once(&format!(" {word} "))?.1.split(' ').next()?;
-            Some(Dialect::named(name).unwrap_or_else(|| panic!("`{name}` is no dialect")))
+            Some(Dialect::named(name).unwrap_or_else(|| panic!("`{name}` is not a dialect")))
         };
         let moved_from = dialect("from");
         let dialect = dialect("in").or_else(|| dialect("to")).unwrap_or_default();

@@ -84,7 +84,7 @@ impl Forger<'_> {
             let end = match self.reference.scan(instance, &cx()) {
                 Ok(()) => Ok(()),
                 Err(Stop::Fault(fault)) => Err(fault),
-                Err(Stop::OutOfSteps) => unreachable!("there is no budget of steps"),
+                Err(Stop::OutOfSteps) => unreachable!("the number of steps is not limited"),
             };
             self.scan(instance, cx, end);
             self.same(scan + 1);
@@ -112,7 +112,11 @@ impl Forger<'_> {
             let mut settled = state.to_vec();
             self.domain.write(&mut settled, 0, state);
             let different = (0..state.len()).find(|at| state[*at] != settled[*at] && !self.is_padding[*at]);
-            assert!(different.is_none(), "{}, {who}, scan {scan}: byte {different:?} is no part of a value", self.name);
+            assert!(
+                different.is_none(),
+                "{}, {who}, scan {scan}: byte {different:?} is not part of a value",
+                self.name
+            );
         }
     }
 }

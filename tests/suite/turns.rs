@@ -1,5 +1,5 @@
-//! Compiled code takes the turns of loops in its own ways, many at once where it can. None can tell that from
-//! taking them as the interpreter does: for every budget a scan ends alike.
+//! Compiled code takes the turns of loops in its own ways, many at once where it can. The result does not differ from
+//! taking them as the interpreter does: for every budget a scan ends in the same way.
 
 use staunch_host::Machine;
 use staunch_ir::interpret::{Interpreter, Stop};
@@ -63,7 +63,7 @@ impl Sweep<'_> {
         for scan in 0..2 {
             let end = reference.scan(0, &contexts[0]).map_err(|it| match it {
                 Stop::Fault(fault) => fault,
-                Stop::OutOfSteps => unreachable!("there is no budget of steps"),
+                Stop::OutOfSteps => unreachable!("the number of steps is not limited"),
             });
             let expected = leaves.of(reference.state());
             for ((machine, cx), who) in self.machines.iter_mut().zip(&contexts[1..]).zip(["Rust", "native"]) {

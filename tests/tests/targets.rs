@@ -91,7 +91,7 @@ fn folder(name: &str) -> PathBuf {
     folder
 }
 
-/// The command, built beside this test.
+/// The command, built together with this test.
 fn staunch() -> Command {
     static BUILT: OnceLock<PathBuf> = OnceLock::new();
     let path = BUILT.get_or_init(|| {
@@ -115,7 +115,7 @@ fn succeed(command: &mut Command) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Whether all is there. What is missing is said past the test runner, which keeps the output of
+/// Whether everything is available. Missing tools are reported past the test runner, which keeps the output of
 /// tests that pass.
 fn have(test: &str, tools: &[&str], target: &str) -> bool {
     let mut missing: Vec<String> = tools.iter().filter(|it| !is_installed(it)).map(|it| format!("`{it}`")).collect();
@@ -332,7 +332,7 @@ fn a_microcontroller_does_what_the_host_does() {
     let example = project().join("st_examples/mcu_counter");
     let built = Path::new(env!("CARGO_TARGET_TMPDIR")).join("mcu");
     let mut cargo = Command::new(env!("CARGO"));
-    // Cargo tells its tests of this crate, which that one must not see.
+    // Cargo gives its tests variables about this crate, which that one must not see.
     for (name, _) in std::env::vars_os().filter(|(name, _)| name.to_string_lossy().starts_with("CARGO_PKG_")) {
         cargo.env_remove(name);
     }

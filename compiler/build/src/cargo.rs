@@ -1,4 +1,4 @@
-//! What a build script tells cargo: lines on standard output.
+//! What a build script prints for cargo: lines on standard output.
 
 use std::path::Path;
 

@@ -174,7 +174,7 @@ impl Build {
         self
     }
 
-    /// Compiles to `$OUT_DIR/<name>.rs`, and tells cargo when to do so again.
+    /// Compiles to `$OUT_DIR/<name>.rs`, and prints for cargo when to do so again.
     ///
     /// Ends the build script with exit code 1 if the source is rejected or cannot be read.
     pub fn compile(&self) {

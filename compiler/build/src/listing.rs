@@ -49,14 +49,14 @@ pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
     let name = path.display();
     let [(project, files)] = projects.as_slice() else {
         if projects.is_empty() {
-            return Err(format!("{name} lists no PLC project"));
+            return Err(format!("{name} does not list a PLC project"));
         }
         let all: Vec<_> = projects.iter().map(|it| it.0.display().to_string()).collect();
         return Err(format!("{name} has {} PLC projects; name one of them: {}", all.len(), all.join(", ")));
     };
     let sources: Vec<_> = files.iter().filter(|it| is_source(it)).cloned().collect();
     if sources.is_empty() {
-        return Err(format!("{} lists no source file", project.display()));
+        return Err(format!("{} does not list a source file", project.display()));
     }
     Ok((sources, lists))
 }
@@ -83,7 +83,7 @@ pub fn definitions(lists: &[PathBuf]) -> Vec<String> {
 fn plc_projects(path: &Path, depth: usize, lists: &mut Vec<PathBuf>) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, String> {
     let fail = |it: &dyn std::fmt::Display| format!("{}: {it}", path.display());
     if depth > DEEPEST {
-        return Err(fail(&"projects list one another"));
+        return Err(fail(&"projects list each other"));
     }
     lists.push(path.to_owned());
     let bytes = std::fs::read(path).map_err(|it| fail(&it))?;

@@ -1,4 +1,4 @@
-//! `staunch.toml`: the settings of the command and of build scripts, for the folder it lies in and those
+//! `staunch.toml`: the settings of the command and of build scripts, for the folder it is in and those
 //! below.
 
 use staunch_frontend::{Dialect, Level, Levels, nearest};
@@ -175,7 +175,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         _ => {
             return Err(match nearest(key, SETTINGS.into_iter()) {
                 Some(near) => format!("there is no setting `{key}`; did you mean `{near}`?"),
-                None => format!("there is no setting `{key}`; there are {}", SETTINGS.join(", ")),
+                None => format!("there is no setting `{key}`; the settings are {}", SETTINGS.join(", ")),
             });
         }
     }
@@ -183,27 +183,27 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
 }
 
 fn text(key: &str, value: &toml::Value) -> Result<String, String> {
-    value.as_str().map(str::to_owned).ok_or_else(|| format!("`{key}` is a text in quotes"))
+    value.as_str().map(str::to_owned).ok_or_else(|| format!("`{key}` must be a string in quotes"))
 }
 
 fn number(key: &str, value: &toml::Value) -> Result<u64, String> {
     let number = value.as_integer().and_then(|it| u64::try_from(it).ok());
-    number.ok_or_else(|| format!("`{key}` is a whole number, 0 or more"))
+    number.ok_or_else(|| format!("`{key}` must be a whole number, 0 or more"))
 }
 
 fn flag(key: &str, value: &toml::Value) -> Result<bool, String> {
-    value.as_bool().ok_or_else(|| format!("`{key}` is true or false"))
+    value.as_bool().ok_or_else(|| format!("`{key}` must be true or false"))
 }
 
-/// One of the words that the option of this name takes.
+/// One of the words that the option with this name takes.
 fn choice(key: &str, value: &toml::Value, words: &[&str]) -> Result<String, String> {
     let named = value.as_str().filter(|it| words.contains(it)).map(str::to_owned);
     let quoted = || words.iter().map(|it| format!("\"{it}\"")).collect::<Vec<_>>().join(", ");
-    named.ok_or_else(|| format!("`{key}` is one of {}", quoted()))
+    named.ok_or_else(|| format!("`{key}` must be one of {}", quoted()))
 }
 
 fn texts(key: &str, value: &toml::Value) -> Result<Vec<String>, String> {
-    let list = value.as_array().ok_or_else(|| format!("`{key}` is a list"))?;
+    let list = value.as_array().ok_or_else(|| format!("`{key}` must be a list"))?;
     list.iter().map(|it| text(key, it)).collect()
 }
 

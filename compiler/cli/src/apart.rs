@@ -38,7 +38,7 @@ fn roles<'a>(files: &[(&'a str, &'a Option<PathBuf>)]) -> Vec<Role<'a>> {
     files.iter().filter_map(|(what, path)| Some((*what, path.as_deref()?))).collect()
 }
 
-/// With what every call reads: sources, the tables beside them, and the project file.
+/// With what every call reads: sources, the tables next to them, and the project file.
 fn check(session: &Session, inputs: &[Role<'_>], outputs: &[Role<'_>]) -> Result<(), String> {
     let sources: Vec<&Path> = session.sources.files().iter().map(|it| Path::new(&it.path)).collect();
     let tables: Vec<PathBuf> = sources.iter().map(|it| it.with_extension("csv")).filter(|it| is_table(it)).collect();

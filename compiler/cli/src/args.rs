@@ -29,19 +29,19 @@ pub enum Command {
     Build(Build),
     /// Run scans on a virtual clock, with stimulus and trace
     Run(Run),
-    /// Run the unit tests that the sources hold, and the tables beside them
+    /// Run the unit tests in the sources, and the tables next to them
     Test(Test),
     /// Measure the time of a scan
     Bench(Bench),
-    /// Find out what a move to another system changes
+    /// Show what changes when a program moves to another system
     Compare(Compare),
     /// Print the long text of a diagnostic, or the list of all
     Explain(Explain),
-    /// Print a shell's completions
+    /// Print completions for a shell
     Completions(Completions),
     /// Print the manual page, or write one for each command into a folder
     Man(Man),
-    /// Make a project that builds and runs
+    /// Create a project that builds and runs
     New(New),
     /// Show which targets this machine can build for, and what to install for the others
     Doctor(Doctor),
@@ -50,10 +50,10 @@ pub enum Command {
 /// What every verb takes.
 #[derive(Clone, Debug, Args)]
 pub struct Common {
-    /// Whose counters a bare name means, and what is allowed beyond the standard
+    /// The system whose counters a bare name means, and whose extensions are allowed
     #[arg(long, global = true, value_parser = dialect, value_name = "iec|cscape|codesys|twincat|openplc|openplc4|logix|siemens")]
     pub dialect: Option<Dialect>,
-    /// How diagnostics are written
+    /// The form of diagnostics
     #[arg(long, global = true, value_enum)]
     pub message_format: Option<MessageFormat>,
     /// Colours in diagnostics
@@ -71,7 +71,7 @@ pub struct Common {
     /// Print nothing but errors
     #[arg(short, long, global = true)]
     pub quiet: bool,
-    /// Say what is done
+    /// Print what is being done
     #[arg(short, long, global = true, action = ArgAction::Count)]
     pub verbose: u8,
 }
@@ -121,7 +121,7 @@ pub enum Color {
 
 #[derive(Clone, Debug, Args)]
 pub struct Files {
-    /// Source files, folders, or projects (TwinCAT's .plcproj, OpenPLC Editor's project.json); those of staunch.toml without one
+    /// Source files, folders, or projects (.plcproj of TwinCAT, project.json of OpenPLC Editor); without one, the files of staunch.toml
     #[arg(value_name = "FILE")]
     pub files: Vec<PathBuf>,
 }
@@ -163,7 +163,7 @@ pub enum Opt {
 pub struct Build {
     #[command(flatten)]
     pub files: Files,
-    /// What to make
+    /// The kind of output
     #[arg(long, value_enum, default_value_t = Emit::Exe)]
     pub emit: Emit,
     /// Where to write it; - is standard output
@@ -172,16 +172,16 @@ pub struct Build {
     /// The machine to compile for
     #[arg(long, value_name = "TRIPLE")]
     pub target: Option<String>,
-    /// What compiles it
+    /// The back end that compiles the program
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
     /// What compiled code is made for; speed without it
     #[arg(long, value_enum)]
     pub opt: Option<Opt>,
-    /// With `--emit rust`: the variables by name at run time, as a table and a function that reads them
+    /// With `--emit rust`: make the variables readable by name at run time, with a table and a function
     #[arg(long)]
     pub names: bool,
-    /// The PROGRAM to run, where the sources hold several
+    /// The PROGRAM to run, if the sources have several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
 }
@@ -190,7 +190,7 @@ pub struct Build {
 pub struct Run {
     #[command(flatten)]
     pub files: Files,
-    /// The PROGRAM to run, where the sources hold several
+    /// The PROGRAM to run, if the sources have several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
     /// Number of scans
@@ -199,7 +199,7 @@ pub struct Run {
     /// Time from scan to scan: 10ms, T#1s
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
-    /// Turns that the loops of one scan may take together [default: 10000000]
+    /// Limit for the turns of all loops in one scan together [default: 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
     /// Inputs over time
@@ -208,10 +208,10 @@ pub struct Run {
     /// Where to write the variables after each scan: .csv, .vcd, .svg, .html, or - for standard output
     #[arg(long, value_name = "OUT")]
     pub trace: Option<PathBuf>,
-    /// Show the scans from this one, or this time, on: 120, 1s200ms
+    /// Show scans from this one, or from this time: 120, 1s200ms
     #[arg(long, value_name = "MOMENT", value_parser = staunch_host::parse_moment)]
     pub from: Option<Moment>,
-    /// Show the scans to this one, or this time; without --scans the run ends there
+    /// Show scans up to this one, or to this time; without --scans the run ends there
     #[arg(long, value_name = "MOMENT", value_parser = staunch_host::parse_moment)]
     pub to: Option<Moment>,
     // In a doc comment `[1,2]` would be a link.
@@ -220,17 +220,17 @@ pub struct Run {
     /// Two or three numbers that a picture (`--trace OUT.svg`) shows in one lane: a,b; may be repeated
     #[arg(long, value_name = "NAMES", requires = "trace")]
     pub overlay: Vec<String>,
-    /// What runs it
+    /// The back end that runs the program
     #[arg(long, value_enum, default_value_t = Backend::Native)]
     pub backend: Backend,
     /// Keep retained variables in this file
     #[arg(long, value_name = "FILE")]
     pub retain: Option<PathBuf>,
-    /// With --realtime, how soon a change of retained variables is on disk: 500ms, or `scan` for after every
+    /// With --realtime, the time until a change of retained variables is on disk: 500ms, or `scan` for after every
     /// scan [default: 1s]
     #[arg(long, value_name = "TIME", requires = "retain", value_parser = staunch_host::parse_within)]
     pub retain_within: Option<i64>,
-    /// Sleep, so that scans happen at their time
+    /// Sleep, so that each scan runs at its time
     #[arg(long)]
     pub realtime: bool,
     #[command(flatten)]
@@ -261,29 +261,29 @@ pub struct Pacing {
 pub struct Test {
     #[command(flatten)]
     pub files: Files,
-    /// Run the tests whose titles hold this text, in any case
+    /// Run only tests whose title contains this text, in upper or lower case
     #[arg(long, value_name = "TEXT")]
     pub filter: Option<String>,
-    /// Write the results as JUnit has them, for CI
+    /// Write the results in JUnit's format, for CI
     #[arg(long, value_name = "OUT.xml")]
     pub junit: Option<PathBuf>,
-    /// Turns that the loops of one test may take together in a scan [default: 1000000000; interpreted 10000000]
+    /// Limit for the turns of all loops of one test in a scan [default: 1000000000; interpreted 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
-    /// Scans that a suite of TcUnit may take until its tests are finished [default: 10000]
+    /// Limit for the scans of a TcUnit suite until its tests are finished [default: 10000]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     pub scans: Option<u64>,
-    /// What runs them
+    /// The back end that runs the tests
     #[arg(long, value_enum, default_value_t = Backend::Native)]
     pub backend: Backend,
     /// Measure what the tests execute: `table` prints it; OUT.info is for lcov, OUT.html and OUT.txt are the
     /// annotated sources
     #[arg(long, value_name = "table|OUT", action = ArgAction::Append)]
     pub coverage: Vec<PathBuf>,
-    /// Run the tests on changed programs, all or N of them, and list the changes that no test notices
+    /// Run the tests on changed programs, all or N of them, and list the changes that no test detects
     #[arg(long, value_name = "N", num_args = 0..=1, require_equals = true)]
     pub mutants: Option<Option<usize>>,
-    /// Threads that run tests [default: as many as there are processors]
+    /// Number of threads that run tests [default: one for each processor]
     #[arg(short, long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     pub jobs: Option<u16>,
 }
@@ -310,7 +310,7 @@ impl Test {
 pub struct Bench {
     #[command(flatten)]
     pub files: Files,
-    /// The PROGRAM to measure, where the sources hold several
+    /// The PROGRAM to measure, if the sources have several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
     /// Number of scans
@@ -322,10 +322,10 @@ pub struct Bench {
     /// Time from scan to scan on the program's clock
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
-    /// Turns that the loops of one scan may take together [default: 10000000]
+    /// Limit for the turns of all loops in one scan together [default: 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
-    /// What runs it
+    /// The back end that runs the program
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
 }
@@ -340,13 +340,13 @@ pub struct Compare {
     /// The dialect that it moves to
     #[arg(long, value_parser = named_dialect, value_name = "DIALECT")]
     pub to: Named,
-    /// The program as rewritten for the other system, where it cannot stay as it is
+    /// The program rewritten for the other system, if it needs changes
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
-    /// The PROGRAM to run, where the sources hold several
+    /// The PROGRAM to run, if the sources have several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
-    /// Inputs over time; without them the command searches for inputs that make a difference
+    /// Inputs over time; without them the command searches for inputs that show a difference
     #[arg(long, value_name = "IN.csv")]
     pub stimulus: Option<PathBuf>,
     /// Number of scans with a stimulus
@@ -361,21 +361,21 @@ pub struct Compare {
     /// Try every sequence of inputs over at most this many scans; without it as many as the budget allows
     #[arg(long, value_name = "N")]
     pub depth: Option<usize>,
-    /// Scans that the search may take in all
+    /// Limit for the total number of scans of the search
     #[arg(long, value_name = "N", default_value_t = 8_000_000)]
     pub budget: u64,
-    /// Findings that the plant lives with, a line each: a counter, the trap and the reason, as `parts 2: nobody reads the
-    /// count past 50`. An output that differs by one needs its own line: `motor output: not wired`
+    /// Accepted findings, one a line: a counter, the trap and the reason, as `parts 2: nobody reads the
+    /// count past 50`. An output that differs because of one needs its own line: `motor output: not wired`
     #[arg(long, value_name = "FILE", conflicts_with = "stimulus")]
     pub accept: Option<PathBuf>,
-    /// What the inputs never do, a line each: `Target 1..500`, `not (Start and Stop)`, `Part for at least 3 scans`, `no run`. The
-    /// verdict holds as far as they do
+    /// Assumptions about the inputs, one a line: `Target 1..500`, `not (Start and Stop)`, `Part for at least 3 scans`, `no run`. The
+    /// verdict is valid only if they hold
     #[arg(long, value_name = "FILE")]
     pub assume: Option<PathBuf>,
-    /// Write the inputs that make a difference as a stimulus
+    /// Write the inputs that show a difference as a stimulus file
     #[arg(long, value_name = "OUT.csv")]
     pub save_stimulus: Option<PathBuf>,
-    /// Write the program as the other system accepts it, in one file: its dialect, its names of pins, on Logix its counters
+    /// Write the program in the form that the other system accepts, as one file, with its dialect and pin names; on Logix also its counters
     #[arg(long, value_name = "OUT.st", conflicts_with = "against")]
     pub write: Option<PathBuf>,
     /// Show every scan, not only those in which something happens; with a file, draw both systems there
@@ -393,7 +393,7 @@ impl Compare {
         let form = self.picture().and_then(|it| it.extension()?.to_str()).map(str::to_ascii_lowercase);
         if let Some(form) = form.filter(|it| matches!(it.as_str(), "html" | "csv" | "vcd")) {
             return Err(format!(
-                "--trace of compare draws both systems as .svg, and not as .{form}: \
+                "--trace of compare draws both systems as .svg, not as .{form}: \
                  write the inputs with --save-stimulus OUT.csv, and run them under each with \
                  `staunch run --dialect … --stimulus OUT.csv --trace OUT.{form}`"
             ));
@@ -417,7 +417,7 @@ impl Compare {
         }
         let systems = match self.from.name == self.to.name {
             true => format!("--from and --to are both `{}`", self.from.name),
-            false => format!("`{}` and `{}` are one system", self.from.name, self.to.name),
+            false => format!("`{}` and `{}` are the same system", self.from.name, self.to.name),
         };
         let same = |a: &PathBuf, b: &PathBuf| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
         match (&self.against, self.files.files.as_slice()) {

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     if args.names && args.emit != Emit::Rust {
-        return Err("`--names` goes with `--emit rust`; `--emit map` says where each variable lies".to_owned());
+        return Err("`--names` goes with `--emit rust`; `--emit map` gives the place of each variable".to_owned());
     }
     if args.opt.is_some() && !matches!(args.emit, Emit::Obj | Emit::Lib | Emit::Exe) {
         return Err("`--opt` is for compiled code: `--emit obj`, `lib` or `exe`".to_owned());
@@ -57,8 +57,8 @@ fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) ->
     match args.backend {
         BuildBackend::Native => native(program, args.emit, target, opt, out),
         BuildBackend::Rust if !program.externals().is_empty() => Err(
-            "what is `{external}` is implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
-             and implement it in C"
+            "`{external}` POUs are implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
+             and implement them in C"
                 .to_owned(),
         ),
         BuildBackend::Rust => rust(program, args.emit, target, opt, out),

@@ -1,5 +1,5 @@
 //! The folder in which compiled runtimes and programs are kept. Parallel runs share it: an entry
-//! is made aside and appears under its name at once, by a rename. What is in it is run, so it
+//! is made aside and appears under its name at once, by a rename. Its contents are executed, so it
 //! belongs to its user alone; what has not been used for long goes.
 
 use std::env;
@@ -48,7 +48,7 @@ pub fn entry(key: &str, make: impl FnOnce(&Path) -> Result<(), String>) -> Resul
     static COUNT: AtomicU32 = AtomicU32::new(0);
     let root = root();
     let fail = |error: io::Error| {
-        format!("the cache folder {}: {error} (set STAUNCH_CACHE to a folder of your own)", root.display())
+        format!("the cache folder {}: {error} (set STAUNCH_CACHE to a folder that you own)", root.display())
     };
     private::open(&root).map_err(fail)?;
     let folder = root.join(key);
@@ -191,7 +191,7 @@ mod private {
             return Err(io::Error::other("it belongs to another user"));
         }
         if folder.mode() & 0o022 != 0 {
-            return Err(io::Error::other("other users may write to it: empty it and take their rights away"));
+            return Err(io::Error::other("other users can write to it: empty it and remove their permissions"));
         }
         match folder.mode() & 0o077 {
             0 => Ok(()),

@@ -19,7 +19,7 @@ struct Need {
     missing: Option<String>,
 }
 
-/// Prints the list. What is asked for by name has to be complete, and so has this machine.
+/// Prints the list. A target that is asked for by name must be complete, and so must this machine.
 pub fn doctor(args: &Doctor) -> Result<u8, String> {
     let host = linker::host();
     let asked: Vec<String> = args.target.iter().map(|it| crate::build::full_name(it)).collect();
@@ -37,7 +37,7 @@ pub fn doctor(args: &Doctor) -> Result<u8, String> {
     Ok(if is_complete { 0 } else { USAGE })
 }
 
-/// Whether all is there for the target.
+/// Whether everything for the target is available.
 fn show(text: &mut String, target: &str) -> bool {
     let is_host = linker::is_host(target);
     // Writing to a String cannot fail.
@@ -65,7 +65,7 @@ fn needs(target: &str, is_host: bool) -> Vec<Need> {
         needs.push(Need { what: "an executable of native code", missing: linker.clone().or(runtime) });
     }
     let rust = if has_system { compiler.or(linker) } else { compiler };
-    let what = if has_system { "an executable by way of Rust" } else { "a library by way of Rust" };
+    let what = if has_system { "an executable through Rust" } else { "a library through Rust" };
     needs.push(Need { what, missing: rust });
     needs
 }

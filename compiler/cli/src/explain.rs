@@ -24,8 +24,9 @@ pub fn explain(args: &args::Explain) -> Result<u8, String> {
 }
 
 fn list() -> String {
-    let mut text =
-        String::from("E is an error, W a lint, which -W, -D and -A CODE, staunch.toml and {allow CODE} set.\n");
+    let mut text = String::from(
+        "E is an error, and W a lint; set lints with -W, -D or -A CODE, in staunch.toml, or with {allow CODE}.\n",
+    );
     for (digits, subject) in SUBJECTS {
         text += &format!("\n{subject}\n");
         for code in Code::ALL.iter().filter(|it| it.name()[1..].starts_with(digits)) {

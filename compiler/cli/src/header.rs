@@ -81,7 +81,7 @@ impl Macros<'_> {
         program.aliases.iter().for_each(|it| self.view(it));
     }
 
-    /// A variable that shares its bits with another one: it may lie at any byte.
+    /// A variable that shares its bits with another one: it may be at any byte.
     fn view(&mut self, variable: &staunch_ir::Variable) {
         let (Some(view), Some(Projection::Field(field))) = (variable.view, variable.place.projections.first()) else {
             return;

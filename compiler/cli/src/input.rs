@@ -23,7 +23,7 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
         all.extend(found(core::slice::from_ref(library))?.into_iter().map(|it| (it, Some(name.clone()))));
     }
     if all.len() > usize::from(u16::MAX) {
-        return Err(format!("{} files are more than one program may have", all.len()));
+        return Err(format!("{} files are more than a program may have", all.len()));
     }
     let mut seen = HashSet::new();
     let mut sources = Sources::default();
@@ -113,7 +113,7 @@ fn bytes(path: &Path) -> Result<(String, Vec<u8>), String> {
     };
     read?;
     if u64::try_from(bytes.len()).unwrap_or(u64::MAX) > MAX_BYTES {
-        return Err(format!("{name}: a source file may have 2 GiB"));
+        return Err(format!("{name}: a source file may have at most 2 GiB"));
     }
     Ok((name, bytes))
 }
@@ -126,7 +126,7 @@ pub fn shown(path: &Path) -> String {
     parts.collect::<PathBuf>().display().to_string().replace(std::path::MAIN_SEPARATOR, "/")
 }
 
-/// The text of a file that is no source; a pipe is waited for.
+/// The text of a file that is not a source; a pipe is waited for.
 pub fn text(path: &Path) -> Result<String, String> {
     let mut text = String::new();
     let read = staunch_host::open_to_read(path).and_then(|mut it| it.read_to_string(&mut text));

@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Why there is no executable for a machine without an operating system.
+/// Why a machine without an operating system gets no executable.
 pub fn no_system(target: &str) -> String {
     format!("{target} has no operating system to run an executable on; write --emit lib and link it into your firmware")
 }

@@ -1,4 +1,4 @@
-//! The command `staunch`: arguments, files, exit codes. What it promises is in `docs/cli.md`.
+//! The command `staunch`: arguments, files, exit codes. Its contract is `docs/cli.md`.
 
 mod apart;
 mod args;
@@ -89,7 +89,7 @@ fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
         output::tell(format_args!("{backtrace}"));
     }
     output::tell(format_args!(
-        "This is a mistake in Staunch, not in your program. Please report it, with the source if you can,"
+        "This is a bug in Staunch, not in your program. Please report it, with the source if you can,"
     ));
     output::tell(format_args!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION")));
 }

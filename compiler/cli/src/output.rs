@@ -16,7 +16,7 @@ pub fn print(bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// Writes a line to standard error. Where that is closed, nobody is there to be told.
+/// Writes a line to standard error. If that is closed, nobody reads it.
 pub fn tell(line: impl Display) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

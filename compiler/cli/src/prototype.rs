@@ -5,7 +5,7 @@ use staunch_ir::{External, Program, Repr, StructId, Type};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-/// Words that are no names in C or C++, and may be in Structured Text.
+/// Words that cannot be names in C or C++, but can be in Structured Text.
 const WORDS: &[&str] = &[
     "alignas",
     "asm",

@@ -36,7 +36,7 @@ pub fn find(target: Option<&str>, opt: Opt) -> Result<Rustc, String> {
         let output = Command::new(&rustc.program).args(["--print", "target-libdir", "--target", target]).output();
         let output = output.map_err(|it| it.to_string())?;
         if !output.status.success() {
-            return Err(format!("rustc knows no target `{target}`"));
+            return Err(format!("rustc does not know the target `{target}`"));
         }
         let folder = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
         if !folder.is_dir() {
@@ -49,8 +49,7 @@ pub fn find(target: Option<&str>, opt: Opt) -> Result<Rustc, String> {
 }
 
 fn version(rustc: &Rustc) -> Result<Vec<u8>, String> {
-    let missing =
-        "rustc was not found: install it from https://rustup.rs; only --backend native for this machine needs none";
+    let missing = "rustc was not found: install it from https://rustup.rs; only --backend native for this machine works without it";
     let output = Command::new(&rustc.program).arg("-vV").output().map_err(|_| missing.to_owned())?;
     if output.status.success() { Ok(output.stdout) } else { Err(missing.to_owned()) }
 }
@@ -82,11 +81,11 @@ pub fn runtime(rustc: &Rustc) -> Result<PathBuf, String> {
 fn unpack(folder: &Path) -> Result<(), String> {
     let mut rest = SOURCES;
     while !rest.is_empty() {
-        let line = rest.iter().position(|it| *it == b'\n').ok_or("the carried sources are damaged")?;
+        let line = rest.iter().position(|it| *it == b'\n').ok_or("the embedded sources are damaged")?;
         let header = String::from_utf8_lossy(&rest[..line]);
-        let (path, length) = header.split_once('\t').ok_or("the carried sources are damaged")?;
-        let length: usize = length.parse().map_err(|_| "the carried sources are damaged")?;
-        let bytes = rest.get(line + 1..line + 1 + length).ok_or("the carried sources are damaged")?;
+        let (path, length) = header.split_once('\t').ok_or("the embedded sources are damaged")?;
+        let length: usize = length.parse().map_err(|_| "the embedded sources are damaged")?;
+        let bytes = rest.get(line + 1..line + 1 + length).ok_or("the embedded sources are damaged")?;
         let file = folder.join(path);
         let parent = file.parent().unwrap_or(folder);
         std::fs::create_dir_all(parent).map_err(|it| format!("{}: {it}", parent.display()))?;

@@ -4,5 +4,5 @@ use tempfile::TempDir;
 
 pub fn folder() -> Result<TempDir, String> {
     let made = tempfile::Builder::new().prefix("staunch-").tempdir();
-    made.map_err(|error| format!("cannot make a temporary folder: {error}"))
+    made.map_err(|error| format!("cannot create a temporary folder: {error}"))
 }

@@ -111,7 +111,7 @@ impl Session {
         }
         if let Some(table) = named.iter().find(|it| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("csv"))) {
             let source = table.with_extension("st");
-            let text = format!("{} is a table, no source: name the source that it is beside", table.display());
+            let text = format!("{} is a table, not a source: name the source next to it", table.display());
             return Err(if source.is_file() { format!("{text}, {}", source.display()) } else { text });
         }
         if let Some(cycle) = &project.cycle {
@@ -179,8 +179,8 @@ impl Session {
         self.sources.files().iter().for_each(|it| self.say("Read", &it.path));
     }
 
-    /// The same program, or `sources` in its place, as it moves to another dialect. What has been
-    /// said of it is not said again.
+    /// The same program, or `sources` in its place, as it moves to another dialect. Diagnostics that have been
+    /// reported are not reported again.
     pub fn moved(&self, to: Dialect, sources: Option<Sources>) -> Result<Self, String> {
         let known: &[Diagnostic] = if sources.is_none() { &self.diagnostics } else { &[] };
         let sources = sources.unwrap_or_else(|| self.sources.clone());
@@ -290,7 +290,7 @@ impl Session {
         if format == Format::Human && !diagnostics.is_empty() && (errors > 0 || !self.common.quiet) {
             text += &summary(errors, diagnostics.len() - errors);
         }
-        // A closed standard error leaves nobody to tell.
+        // If standard error is closed, nobody reads it.
         let _ = std::io::stderr().lock().write_all(text.as_bytes());
         Ok(())
     }
@@ -350,11 +350,11 @@ impl Session {
                 program.instances = wanted;
             }
             None if program.instances.is_empty() => {
-                return Err("there is nothing to run: the sources hold no PROGRAM".to_owned());
+                return Err("nothing to run: the sources have no PROGRAM".to_owned());
             }
             None if program.instances.len() > 1 && !program.is_configured => {
                 return Err(format!(
-                    "the sources hold several programs; choose one with --program: there {}",
+                    "the sources have several programs; choose one with --program: there {}",
                     are(&names)
                 ));
             }

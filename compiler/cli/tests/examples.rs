@@ -1,7 +1,7 @@
 //! Every folder in `st_examples` with an `expected.csv`, and every command that a document shows.
 //!
 //! An example's README shows the command that runs it; the same command with `--trace -` must
-//! print `expected.csv`, on every back end. There is no list: a folder is enough.
+//! print `expected.csv`, on every back end. No list names the examples: a folder is enough.
 
 use std::fmt::Write;
 use std::fs;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 fn project() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the project's folder is there")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").canonicalize().expect("the project's folder exists")
 }
 
 fn read(path: &Path) -> String {

@@ -54,7 +54,7 @@ impl Allowances {
             };
             if names.is_empty() {
                 let help = "name a lint after it: `{allow W0501}`";
-                diagnostics.push(no_effect(pragma.span, "`allow` names no lint".into()).help(help));
+                diagnostics.push(no_effect(pragma.span, "`allow` does not name a lint".into()).help(help));
             }
             for name in names {
                 match lint(name) {

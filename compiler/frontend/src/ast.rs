@@ -270,7 +270,7 @@ impl Pool {
 /// `{pool 16}`: how many objects of a type `__NEW` can have made at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pool {
-    /// `None` where it is no number.
+    /// `None` if it is not a number.
     pub count: Option<u32>,
     pub span: Span,
 }
@@ -422,7 +422,7 @@ pub enum TypeKind<'s> {
     /// An elementary type, a user's, or a block, possibly qualified: `CODESYS.CTU`. A family or
     /// namespace comes first.
     Named(Vec<Name<'s>>),
-    /// `STRING`, `STRING[80]`, `STRING(80)`, WSTRING alike.
+    /// `STRING`, `STRING[80]`, `STRING(80)`, and the same for WSTRING.
     String { wide: bool, capacity: Option<Box<Expr<'s>>> },
     /// `INT (0..100)`, also on a named base.
     Subrange { base: Name<'s>, low: Box<Expr<'s>>, high: Box<Expr<'s>> },
@@ -436,7 +436,7 @@ pub enum TypeKind<'s> {
     Reference { kind: RefKind, target: Box<TypeSpec<'s>> },
     /// `UNION … END_UNION`, `STRUCT OVERLAP … END_STRUCT`: its members share their bytes.
     Union(Vec<VarDecl<'s>>),
-    /// A type that did not parse, or is not told apart any further; reported.
+    /// A type that did not parse or is not analysed any further; reported.
     Error,
 }
 
@@ -534,7 +534,7 @@ pub struct Configuration<'s> {
 pub struct Binding<'s> {
     /// `Run.valve.open`
     pub target: Expr<'s>,
-    /// What lies at the address, which is its name; without one, what the variable starts with.
+    /// The variable at the address, which is its name; without an address, the variable's initial value.
     pub located: VarDecl<'s>,
 }
 
@@ -636,7 +636,7 @@ pub enum StatementKind<'s> {
         until: Expr<'s>,
     },
     Try(Box<Try<'s>>),
-    /// `name:`, where a jump goes on.
+    /// `name:`, the target of a jump.
     Label(Name<'s>),
     /// `JMP name`
     Jump(Name<'s>),

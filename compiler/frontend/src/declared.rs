@@ -48,9 +48,9 @@ pub(crate) fn changed<'s>(
         deciding.clone_from(&before.undecided);
     }
     let refused = deciding.into_iter().map(|span| {
-        Diagnostic::new(Code::E0902, span, "a condition that asks for declarations decides declarations")
-            .label("what is declared has to be known before")
-            .help("ask for a name that `{define NAME}`, or the project, defines where that holds")
+        Diagnostic::new(Code::E0902, span, "a condition on declarations cannot contain declarations")
+            .label("all declarations must be known before it is evaluated")
+            .help("where the condition holds, define a name with `{define NAME}` or in the project, and test that")
     });
     refused.collect()
 }

@@ -1,4 +1,4 @@
-//! What a user is told: one mistake, where it is, and what to do about it.
+//! What a user reads: one mistake, where it is, and what to do about it.
 
 mod codes;
 mod levels;

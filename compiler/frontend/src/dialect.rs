@@ -71,7 +71,7 @@ impl Dialect {
         Self::names().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
     }
 
-    /// The dialect of that name; the error is a sentence without a full stop.
+    /// The dialect with this name; the error is a sentence without a full stop.
     pub fn asked_for(name: &str) -> Result<Self, String> {
         let names = || Self::names().map(|it| it.0);
         Self::named(name).ok_or_else(|| match nearest(name, names()) {
@@ -205,7 +205,7 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// AND, OR, XOR and NOT of integers are of their bits: there are no bit strings.
+    /// AND, OR, XOR and NOT of integers work on their bits: the dialect has no bit strings.
     pub const fn has_bits_of_integers(self) -> bool {
         matches!(self, Self::Logix)
     }
@@ -235,7 +235,7 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// FUNCTIONs of one name, and METHODs of one class and name, may differ in their parameters.
+    /// FUNCTIONs, and METHODs of one class, may have the same name if they differ in their parameters.
     pub const fn has_overloads(self) -> bool {
         !matches!(self, Self::Codesys)
     }
@@ -281,7 +281,7 @@ impl Dialect {
     }
 
     /// `a [:=] b`: what is assigned so is set to 0 when the controller enters Run mode ("Specify a non-retentive assignment",
-    /// MOTION-RM002H, p. 637; the type STRING is there, too).
+    /// MOTION-RM002H, p. 637; the type STRING is listed, too).
     pub const fn resets_assignments(self) -> bool {
         matches!(self, Self::Logix)
     }
@@ -316,7 +316,7 @@ impl Dialect {
         matches!(self, Self::Codesys)
     }
 
-    /// THIS is there in a PROGRAM, too, for its variables and METHODs.
+    /// THIS is also available in a PROGRAM, for its variables and METHODs.
     pub const fn has_this_of_programs(self) -> bool {
         matches!(self, Self::Codesys)
     }

@@ -83,7 +83,7 @@ fn json(text: &str) -> Option<Kind> {
     (is_object || is_list).then_some(Kind {
         name: "JSON",
         at: start,
-        help: "name the sources of the program, `.st` files or a folder of them",
+        help: "name the program's sources: `.st` files, or their folder",
     })
 }
 
@@ -153,7 +153,7 @@ fn scl(text: &str) -> Option<Kind> {
     Some(Kind {
         name: "SCL of Siemens'",
         at,
-        help: "write names without `#` and quotes, pass what is in data blocks as variables, and drop REGION",
+        help: "write names without `#` and quotes, pass the contents of data blocks as variables, and delete REGION",
     })
 }
 

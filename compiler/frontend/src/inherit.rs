@@ -2,7 +2,7 @@
 //! own, and the base's routines, each a copy that works on the class itself: so a call in it of what the class
 //! overrides is a call of that, and every call is known when the program is compiled.
 //!
-//! What is overridden is there for SUPER alone, where something calls it so.
+//! An overridden routine is kept only for SUPER, where something calls it so.
 
 mod classes;
 
@@ -135,9 +135,9 @@ impl<'s> Expansion<'_, 's> {
         // What extends one that is too far is so by that.
         if depth == MAX_DEPTH + 1 {
             let pou = &self.classes.all[at].pou;
-            let message = format!("`{}` is more than {MAX_DEPTH} classes away from its first base", pou.name.text);
+            let message = format!("`{}` is more than {MAX_DEPTH} levels below its first base class", pou.name.text);
             let error = Diagnostic::new(Code::E0901, pou.name.span, message);
-            self.diagnostics.push(error.label("it has copies of what all of them have"));
+            self.diagnostics.push(error.label("it contains copies of the members of all of them"));
         }
         depth <= MAX_DEPTH
     }
@@ -167,7 +167,7 @@ impl<'s> Expansion<'_, 's> {
             }
             Base::Unknown => {
                 if crate::dialect::bare_block(self.classes.dialect(base.span), base.text).is_some() {
-                    let message = format!("`{}` is a standard block, and nothing extends it", base.text);
+                    let message = format!("`{}` is a standard block and cannot be extended", base.text);
                     self.diagnostics.push(
                         Diagnostic::new(Code::E0102, base.span, message)
                             .label("expected a FUNCTION_BLOCK that is declared in Structured Text")
@@ -193,14 +193,14 @@ impl<'s> Expansion<'_, 's> {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0402, base.span, format!("`{}` extends itself", pou.name.text))
                     .label("its size would be endless")
-                    .note(format!("the way goes {} -> {}", way.join(" -> "), base.text)),
+                    .note(format!("the chain is {} -> {}", way.join(" -> "), base.text)),
             );
             return None;
         }
         if self.classes.all[at].pou.external.is_some() {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0319, base.span, format!("`{}` is `{{external}}`", base.text))
-                    .label("nothing extends it")
+                    .label("it cannot be extended")
                     .help("declare an instance of it in this FUNCTION_BLOCK"),
             );
             return None;
@@ -208,7 +208,7 @@ impl<'s> Expansion<'_, 's> {
         if let Some(span) = self.classes.all[at].pou.modifiers.is_final {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, base.span, format!("`{}` is FINAL", base.text))
-                    .label("nothing extends it")
+                    .label("it cannot be extended")
                     .other(span, "declared so here"),
             );
         }
@@ -311,17 +311,18 @@ impl<'s> Expansion<'_, 's> {
         if let Some((access, span)) = new.modifiers.access
             && rank(new) < rank(old)
         {
-            let message = format!("`{}` is {}, and what it overrides is not", new.name.text, access.word());
+            let message =
+                format!("`{}` is {}, but the declaration that it overrides is not", new.name.text, access.word());
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, span, message)
-                    .label("it is called through the base all the same")
+                    .label("calls through the base class would still reach it")
                     .other(old.name.span, "overridden here"),
             );
         }
         if let Some((Access::Private, span)) = old.modifiers.access {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, new.name.span, format!("`{}` of the base is PRIVATE", old.name.text))
-                    .label("what is PRIVATE is not overridden: give this one another name")
+                    .label("a PRIVATE METHOD cannot be overridden: use another name here")
                     .other(span, "declared so here"),
             );
         }
@@ -337,14 +338,14 @@ impl<'s> Expansion<'_, 's> {
         }
         let message = match base {
             Some(base) => format!("`{}` has no `{}` to override", base.name.text, new.name.text),
-            None => "there is nothing to override: this FUNCTION_BLOCK extends no other".to_owned(),
+            None => "this overrides nothing: the FUNCTION_BLOCK does not extend another".to_owned(),
         };
         let error = Diagnostic::new(Code::E0403, span, message);
         self.diagnostics.push(match candidates.find(|it| is_same(it, new)) {
             Some(other) => error
-                .label("none with these parameters")
+                .label("the base has none with these parameters")
                 .other(other.name.span, "it has this one")
-                .help("give this one the same parameters, or delete OVERRIDE, and it is one more of the name"),
+                .help("use the same parameters, or delete OVERRIDE to add an overload"),
             None => error.help("delete OVERRIDE").fix(span, ""),
         });
     }
@@ -358,10 +359,10 @@ impl<'s> Expansion<'_, 's> {
         let is_open = base.is_some_and(|it| it.modifiers.is_abstract.is_some());
         for routine in pou.routines.iter().filter(|it| !it.is_hidden && (is_open || it.home.is_none())) {
             let Some(span) = routine.modifiers.is_abstract else { continue };
-            let message = format!("`{}` is not ABSTRACT, and has no body for `{}`", pou.name.text, routine.name.text);
+            let message = format!("`{}` is not ABSTRACT, but has no body for `{}`", pou.name.text, routine.name.text);
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, pou.name.span, message)
-                    .label("an instance could not be called so")
+                    .label("a call of it would have no body to run")
                     .other(span, "ABSTRACT here")
                     .help(format!("override `{}`, or make the FUNCTION_BLOCK ABSTRACT", routine.name.text)),
             );

@@ -1,5 +1,5 @@
-//! Text to tokens. Lexing never fails: characters that are no token become one
-//! [`Kind::Unknown`] a run, reported here; comments and pragmas are kept aside.
+//! Text to tokens. Lexing never fails: characters that do not form a token become one
+//! [`Kind::Unknown`] a run, reported here; comments and pragmas are kept separately.
 
 mod comment;
 mod condition;
@@ -33,7 +33,7 @@ pub struct Tokens<'s> {
     pub comments: Vec<(u32, u32)>,
     pub pragmas: Vec<Name<'s>>,
     pub diagnostics: Vec<Diagnostic>,
-    /// The end of the file is no end: an unclosed comment or too many errors came before it.
+    /// The end of the tokens is not the end of the program: an unclosed comment or too many errors came before it.
     pub cut: bool,
     /// Each `{IF …}` that is decided when all declarations are known.
     pub undecided: Vec<Span>,
@@ -139,7 +139,7 @@ impl<'s> Reading<'s> {
         self.tokens.cut = true;
         let span = self.span((at.0, at.0 + len));
         Diagnostic::new(Code::E0003, span, format!("{what} that starts here is not closed"))
-            .label(format!("this `{open}` has no `{close}`"))
+            .label(format!("this `{open}` has no matching `{close}`"))
             .help(format!("write `{close}` where {what} ends"))
     }
 
@@ -169,24 +169,24 @@ impl<'s> Reading<'s> {
         }
         let shown: String = self.slice(place).chars().take(20).flat_map(char::escape_debug).collect();
         let mut it =
-            Diagnostic::new(Code::E0002, self.span(place), format!("`{shown}` means nothing in Structured Text"));
+            Diagnostic::new(Code::E0002, self.span(place), format!("`{shown}` has no meaning in Structured Text"));
         it = match shown.chars().next() {
             Some('‘' | '’' | '‚' | '`') => it.help("a string is written between two `'`"),
             Some('“' | '”' | '„') => it.help("a string is written between two `'`, a WSTRING between two `\"`"),
             Some('–' | '—' | '−') => it.help("write `-`"),
             Some('\u{a0}') => it.help("write an ordinary space"),
             Some('#') if crate::spelling::is_preprocessor(&self.text[index(place.1)..]) => it.help(
-                "there is no preprocessor: declare a `VAR CONSTANT` for `#define`, and give all files to the command for `#include`",
+                "Structured Text has no preprocessor: declare a `VAR CONSTANT` for `#define`, and give all files to the command for `#include`",
             ),
             Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {
-                it.help("a variable is named without `#`").fix(self.span(place), "")
+                it.help("variables are written without `#`").fix(self.span(place), "")
             }
             Some('|') => it.help("write `OR`"),
             Some('#') => it.help("a comment is written `// …` or `(* … *)`, a number of base 16 `16#FF`"),
             Some('$') => it.help("a number of base 16 is written `16#FF`"),
             Some('~') => it.help("write `NOT`"),
             Some('?') => it.help("choose a value with `SEL(condition, value_if_false, value_if_true)`"),
-            Some('}') => it.help("a block is ended by its own word: `END_IF`, `END_FOR`, `END_WHILE`"),
+            Some('}') => it.help("a block ends with its own keyword: `END_IF`, `END_FOR`, `END_WHILE`"),
             _ => it.label("delete this"),
         };
         self.tokens.diagnostics.push(it);
@@ -194,16 +194,16 @@ impl<'s> Reading<'s> {
 
     /// ruSTy's word for a POU that is implemented elsewhere: reported once in a file.
     fn report_external(&mut self, place: (u32, u32)) {
-        const MESSAGE: &str = "`@EXTERNAL` is ruSTy's word for what is implemented elsewhere";
+        const MESSAGE: &str = "`@EXTERNAL` is ruSTy's pragma for POUs that are implemented elsewhere";
         if self.tokens.diagnostics.iter().any(|it| it.message == MESSAGE) {
             return;
         }
         let end = place.1 + 8;
         self.tokens.diagnostics.push(
             Diagnostic::new(Code::E0002, self.span((place.0, end)), MESSAGE)
-                .label("here that is a pragma")
+                .label("Staunch has another pragma for it")
                 .help("write `{external}` before each FUNCTION and FUNCTION_BLOCK that is implemented in Rust or C")
-                .note("a standard function, such as `INT_TO_STRING`, is not declared"),
+                .note("standard functions such as `INT_TO_STRING` need no declaration"),
         );
     }
 
@@ -223,7 +223,7 @@ impl<'s> Reading<'s> {
             Diagnostic::new(
                 Code::E0002,
                 self.span(whole),
-                format!("`{open}` and `{close}` mean nothing in Structured Text"),
+                format!("`{open}` and `{close}` have no meaning in Structured Text"),
             )
             .label("a string is written between two `'`")
             .help(format!("write `{meant}`"))
@@ -251,7 +251,7 @@ impl<'s> Reading<'s> {
     fn open_text(&mut self, place: (u32, u32)) {
         let quote = &self.slice(place)[..1];
         let it = Diagnostic::new(Code::E0004, self.span(place), "the string is not closed on its line")
-            .label(format!("this {quote} has no partner"))
+            .label(format!("this {quote} has no closing one"))
             .help(format!(
                 "write {quote} where the string ends; inside a string `${quote}` is a quote, `$N` a line break"
             ));

@@ -122,7 +122,7 @@ pub fn compile(sources: &Sources, options: &Options) -> Compilation {
     with_library(sources, options, Bodies::Kept)
 }
 
-/// What [`compile`] has to say, in less memory: each body is let go when it has been checked.
+/// What [`compile`] has to say, in less memory: each body is dropped when it has been checked.
 pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
     with_library(sources, options, Bodies::Dropped).diagnostics
 }
@@ -197,7 +197,7 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     let mut compilation = Compilation { tests, coverage, readdressed, ..compilation };
     if has_tests && !options.tests {
-        // Unit tests that do not run are checked all the same.
+        // Unit tests that do not run are still checked.
         let mut found = run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics;
         if keep == Bodies::Kept {
             // The instances of a test may make recursion that the program has not.
@@ -328,7 +328,7 @@ fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnosti
     }
 }
 
-/// Whether the library has a type or a POU of this name, in some dialect. Nothing, where what it has may be either.
+/// Whether the library has a type or a POU with this name, in some dialect. `None` if it may be either.
 fn library_has(subject: Subject, name: &str) -> Option<bool> {
     let is_text = name.eq_ignore_ascii_case("STRING") || name.eq_ignore_ascii_case("WSTRING");
     let is_type = is_text || staunch_ir::Elementary::named(name).is_some();
@@ -344,7 +344,7 @@ fn library_has(subject: Subject, name: &str) -> Option<bool> {
     }
 }
 
-/// A word that ends a body is not in the files of systems that keep bodies apart: what is not closed says so.
+/// The files of systems that keep bodies separately have no word that ends a body, so the diagnostic does not show one.
 fn at_the_end_of_a_body(it: &mut Diagnostic, source: &Source) {
     if it.code != Code::E0014 || source.is_verbatim(it.span) {
         return;
@@ -360,13 +360,13 @@ fn at_the_end_of_a_body(it: &mut Diagnostic, source: &Source) {
 fn problem(file: u16, problem: &Problem) -> Diagnostic {
     let span = Span { file, start: problem.at, end: problem.at + 1 };
     let (code, help) = match problem.trouble {
-        Trouble::Broken => (Code::E0033, "export the file again in its own system"),
-        Trouble::Absent => (Code::E0033, "add the file, or take it out of the project"),
-        Trouble::SecondBody => (Code::E0902, "put its worksheets into one in its own system"),
-        Trouble::Odd => (Code::E0033, "correct it in its own system, and export the file again"),
+        Trouble::Broken => (Code::E0033, "export the file again from the original system"),
+        Trouble::Absent => (Code::E0033, "add the file, or remove it from the project"),
+        Trouble::SecondBody => (Code::E0902, "merge its worksheets into one in the original system"),
+        Trouble::Odd => (Code::E0033, "correct it in the original system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
         Trouble::Open => (Code::E0003, "close it where it ends"),
-        Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or have its own system convert it"),
+        Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or convert it in the original system"),
     };
     Diagnostic::new(code, span, problem.message.clone()).help(problem.help.as_deref().unwrap_or(help))
 }

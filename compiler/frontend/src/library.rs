@@ -97,7 +97,7 @@ fn is_stub(pou: &Pou<'_>) -> bool {
 
 impl Stubs {
     /// Reports what is called of the library and has no body, each once; `routines` are those of the POUs' slots. In a
-    /// unit test it may have a mock in its place, and else faults, as it does beside a table.
+    /// unit test a mock may replace it; otherwise it faults, as it does in a test by a table.
     pub fn report_called(&self, declarations: &mut Declarations<'_>, routines: &[Option<&Routine>]) {
         if self.names.is_empty() || declarations.log.options.tests || declarations.log.options.is_tested {
             return;
@@ -128,11 +128,11 @@ impl Declarations<'_> {
             .other(pou.name.span, "declared here, without a body")
             .help(match can_be_external(pou) {
                 true => format!(
-                    "write its body in {file}, `RETURN;` where it is to do nothing, or `{{external}}` before it, and implement it \
+                    "write its body in {file} (`RETURN;` to do nothing), or `{{external}}` before it, and implement it \
                      in Rust or C"
                 ),
                 false => format!(
-                    "write its body in {file}, `RETURN;` where it is to do nothing; it may call a FUNCTION that is `{{external}}`"
+                    "write its body in {file} (`RETURN;` to do nothing); it may call a FUNCTION that is `{{external}}`"
                 ),
             });
         self.report(error);
@@ -159,8 +159,8 @@ impl Declarations<'_> {
             .label("called here")
             .other(name.span, "declared `{external}` here: it is implemented in Rust or C")
             .help(
-                "build the program with `--emit rust`, `obj` or `lib` for what implements it, or test it with `MOCK_FUNCTION` \
-                 or `MOCK` in its place",
+                "build the program with `--emit rust`, `obj` or `lib`, and link the implementation, or test it with `MOCK_FUNCTION` \
+                 or `MOCK` instead",
             );
             self.report(error);
         }

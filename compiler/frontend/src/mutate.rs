@@ -20,7 +20,7 @@ pub struct Mutant {
 /// The inputs by which blocks see edges, and are reset or loaded.
 const EDGES: [&str; 9] = ["CU", "CD", "CLK", "R", "LD", "RESET", "LOAD", "S", "S1"];
 
-/// The changes of the POUs that are no tests, in the order of the sources.
+/// The changes of the POUs that are not tests, in the order of the sources.
 pub fn mutants(sources: &Sources) -> Vec<Mutant> {
     let mut mutants = Mutants { sources, all: Vec::new() };
     let files = sources.files().iter().zip(0u16..);

@@ -89,7 +89,7 @@ pub const OPEN_OPTIONS: &[OpenOption] = &[
     OpenOption {
         option: BlockOption::FTrigBefore202412,
         name: "openplc-f-trig",
-        question: "F_TRIG of OpenPLC sees an edge in a first call with CLK FALSE in versions before December 2024.",
+        question: "Before December 2024, F_TRIG of OpenPLC sees an edge in a first call with CLK FALSE.",
         settings: ["now", "before-2024-12"],
     },
 ];

@@ -183,7 +183,7 @@ macro_rules! counter {
     };
 }
 
-/// Every unit. Those of one name are of different dialects.
+/// Every unit. Units with the same name are of different dialects.
 pub(crate) const UNITS: &[Unit] = units! {
     Type     "BLINK"            "blink"            [Codesys: Util];
     Type     "GEN_MODE"         "gen_mode"         [Codesys: Util];
@@ -418,7 +418,7 @@ static LENGTHS: LazyLock<[u32; 32]> = LazyLock::new(|| {
     lengths
 });
 
-/// The place of a name's first letter, of an underline the last.
+/// The place of a name's first letter, of an underscore the last.
 fn place_of(first: u8) -> usize {
     usize::from(first.to_ascii_uppercase().wrapping_sub(b'A'))
 }
@@ -439,7 +439,7 @@ pub(crate) fn unit(name: &str, dialect: Dialect) -> Option<Unit> {
     units(name).find(|it| it.dialects.is_empty() || it.dialects.contains(&dialect))
 }
 
-/// One of the dialects that have a unit of this name, where not all do.
+/// One of the dialects that have a unit with this name, if not all do.
 pub(crate) fn owner(name: &str) -> Option<Dialect> {
     units(name).find_map(|it| it.dialects.first().copied())
 }
@@ -450,7 +450,7 @@ struct Named {
     unit: Unit,
     at: Span,
     dialect: Dialect,
-    /// After the name of its library: it is there whatever the program declares.
+    /// After the name of its library: it is available whatever the program declares.
     is_qualified: bool,
     /// The program declares its name: the unit has [another](renamed).
     is_taken: bool,
@@ -536,10 +536,10 @@ impl Extended {
 impl Named {
     fn unfit(&self, error: &Diagnostic) -> Diagnostic {
         let name = self.unit.name;
-        Diagnostic::new(Code::E0902, self.at, format!("the library's `{name}` does not fit what you declare"))
+        Diagnostic::new(Code::E0902, self.at, format!("the library's `{name}` conflicts with your declarations"))
             .label("named here")
             .note(format!("in it: {}", error.message))
-            .help(format!("declare a `{name}` of your own, or another name for what it uses"))
+            .help(format!("declare your own `{name}`, or rename your declaration that it uses"))
     }
 }
 
@@ -831,7 +831,7 @@ mod tests {
             let dialect = unit.dialects.first().copied().unwrap_or_default();
             let call = match unit.use_ {
                 Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
-                // It is there where one of its functions is named.
+                // It is included where one of its functions is named.
                 Use::Space if unit.name == WRITE_PROTECTED => {
                     format!("PROGRAM Main {WRITE_PROTECTED}_BOOL(); END_PROGRAM")
                 }

@@ -82,7 +82,7 @@ impl Hint {
 /// How a file's bytes hold its text.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Encoding {
-    /// Bytes of the byte order mark, which is no part of the text.
+    /// Bytes of the byte order mark, which is not part of the text.
     mark: u32,
     units: Units,
 }
@@ -158,7 +158,7 @@ impl Source {
 
     /// A file that a project lists, and that is not there.
     pub fn absent(path: impl Into<String>) -> Self {
-        let message = |name: &str| format!("`{name}` is not there, and the project lists it");
+        let message = |name: &str| format!("the project lists `{name}`, but the file does not exist");
         Self::without_text(path, vendor::Trouble::Absent, message)
     }
 
@@ -429,7 +429,7 @@ impl Sources {
         self.device.as_ref().map(Device::dialect)
     }
 
-    /// Takes the name of the project, the first of which is told.
+    /// Takes the name of the project; the first one counts.
     pub fn name_project(&mut self, name: Option<String>) {
         self.project = self.project.take().or(name);
     }

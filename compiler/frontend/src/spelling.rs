@@ -17,7 +17,7 @@ impl Eq for Key<'_> {}
 
 impl Hash for Key<'_> {
     fn hash<H: Hasher>(&self, state: &mut H) {
-        // Without the bit that tells the cases of a letter apart. That makes some other characters
+        // Without the bit in which upper and lower case differ. That makes some other characters
         // one, which costs a comparison and no more.
         let fold = |bytes: [u8; 8]| u64::from_le_bytes(bytes) & 0xdfdf_dfdf_dfdf_dfdf;
         let (words, rest) = self.0.as_bytes().as_chunks::<8>();
@@ -59,7 +59,7 @@ fn begin_alike(a: &str, b: &str) -> bool {
     first(a) == first(b)
 }
 
-/// The letters that a name has, as a set of 64: that two names are far apart is most often seen in it.
+/// The letters that a name has, as a set of 64: it usually shows that two names are very different.
 fn letters_of(name: &str) -> u64 {
     name.chars().fold(0, |set, letter| set | 1 << (u32::from(letter) % 64))
 }

@@ -1,7 +1,7 @@
 //! Tokens to the syntax tree: one function a production, over chumsky's input.
 //!
-//! Productions decide by the tokens ahead and never go back, so that each mistake is told once,
-//! where it is, and reading goes on in the list it belongs to (`recover`).
+//! Productions decide by the tokens ahead and never go back, so that each mistake is reported once,
+//! where it is, and reading continues in the list it belongs to (`recover`).
 
 mod token_class;
 

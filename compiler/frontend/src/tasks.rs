@@ -1,4 +1,4 @@
-//! What TwinCAT tells of its tasks, in the list `TwinCAT_SystemInfoVarList`: where a program names it, each run of a
+//! What TwinCAT provides about its tasks, in the list `TwinCAT_SystemInfoVarList`: where a program names it, each run of a
 //! PROGRAM begins with a call that notes whose cycle it is. Tasks are numbered from 1, as they are declared; what has
 //! none is in one more, after them.
 

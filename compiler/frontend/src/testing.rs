@@ -102,7 +102,7 @@ pub(crate) fn expand<'s>(
     }
     let exchanged = exchange::expand(files, sources);
     for file in files.iter_mut() {
-        // What a CONFIGURATION runs does not run beside the tests.
+        // What a CONFIGURATION runs does not run together with the tests.
         let configurations = file.items.iter_mut().filter_map(|it| match it {
             Item::Configuration(it) => Some(it),
             Item::Pou(_) | Item::Types(_) | Item::Globals(_) | Item::Test(_) => None,

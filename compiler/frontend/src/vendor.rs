@@ -22,7 +22,7 @@ pub use openplc::is_project as is_openplc_project;
 
 use xml::Reader;
 
-/// The Structured Text in a file of another system's; `None` where it is no such file.
+/// The Structured Text in a file of another system; `None` if it is not such a file.
 pub fn read(text: &str) -> Option<Assembly> {
     if exp::is_export(text) {
         return Some(exp::read(text));
@@ -47,7 +47,7 @@ pub fn read_named(path: &str, text: &str) -> Option<Assembly> {
     openplc::read(path, text).or_else(|| read(text)).or_else(named)
 }
 
-/// Whether a file of this name is one of TwinCAT 3's.
+/// Whether a file with this name is a TwinCAT 3 file.
 pub fn is_twincat_name(path: &str) -> bool {
     let extension = path.rsplit_once('.').map_or("", |it| it.1);
     ["TcPOU", "TcGVL", "TcDUT", "TcIO", "TcTLEO", "TcTTO"].iter().any(|it| it.eq_ignore_ascii_case(extension))

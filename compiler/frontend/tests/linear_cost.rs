@@ -11,7 +11,7 @@ const SMALL: usize = 1000;
 const LARGE: usize = 10 * SMALL;
 const MOST: u32 = 40;
 
-/// What a shape's program consists of beside its parts.
+/// What a shape's program consists of in addition to its parts.
 struct Shape {
     name: &'static str,
     before: &'static str,

@@ -1,9 +1,9 @@
 //! Whether two places name the same storage, and what follows from it: the one answer to the
 //! questions "may this write change what that reads" and "is this the same variable".
 //!
-//! Roots of one body keep apart, but for these: a by-reference parameter may stand for a global, for
+//! Roots of one body are separate, except for these: a by-reference parameter may stand for a global, for
 //! a part of the instance that its callers can name, and for what another parameter stands for; and
-//! the instance may itself lie in a global. Types decide those: what can be a part of what.
+//! the instance may itself be in a global. Types decide those: what can be a part of what.
 
 use crate::shapes;
 use crate::visit::{self, Access};
@@ -40,7 +40,7 @@ impl<'p> Frame<'p> {
             Root::Instance => self.state.map(Type::Struct),
             Root::Globals => Some(Type::Struct(self.program.globals)),
             Root::Param(id) => self.params.get(id.index()).map(|it| it.ty),
-            // A local is no part of anything else.
+            // A local is not part of anything else.
             Root::Local(_) => None,
         }
     }
@@ -181,7 +181,7 @@ fn holds(program: &Program, whole: Type, part: Type) -> bool {
     })
 }
 
-/// Whether the value of `expr` may depend on what lies at `place`.
+/// Whether the value of `expr` may depend on the contents of `place`.
 pub fn reads(frame: &Frame<'_>, expr: &Expr, place: &Place) -> bool {
     let mut found = false;
     visit::reads(expr, &mut |it| found |= alias(frame, it, place) != Alias::No);

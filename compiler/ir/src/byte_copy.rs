@@ -1,5 +1,5 @@
 //! Loops that copy bytes from one reference to another: what MEMCPY is in the IR, where the interpreter runs it. A back end may
-//! call the runtime once for all of its turns, which does the same to the state and faults alike.
+//! call the runtime once for all of its turns, which does the same to the state, and faults in the same way.
 
 use crate::{Conversion, Elementary, Expr, ExprKind, For, Location, Op, Place, Projection, Root, Statement};
 use crate::{StatementKind, Step, Type, Value};

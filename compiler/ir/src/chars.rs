@@ -107,7 +107,7 @@ impl Chars {
         Some(if wide { Self::Wide(ascii.into_iter().map(u16::from).collect()) } else { Self::Narrow(ascii) })
     }
 
-    /// Its units as they lie in memory.
+    /// Its units as they are in memory.
     pub fn units_as_bytes(&self) -> Vec<u8> {
         match self {
             Self::Narrow(it) => it.clone(),

@@ -27,7 +27,7 @@ pub struct ExternalParam {
     pub by_reference: bool,
 }
 
-/// The call of one, which is in the routine that is declared so. What is passed shares no storage: where it might, the
+/// The call of one, which is in the routine that is declared so. The arguments share no storage: where they might, the
 /// routine passes copies and writes them back.
 #[derive(Clone, Debug)]
 pub struct ExternalCall {

@@ -5,7 +5,7 @@ use staunch_runtime::{BLOCKS, Family};
 
 pub const AT: Location = Location { file: 0, line: 7, column: 3 };
 
-/// Line `line`, to tell locations apart.
+/// Line `line`, to distinguish locations.
 pub fn at(line: u32) -> Location {
     Location { line, ..AT }
 }

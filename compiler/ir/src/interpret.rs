@@ -1,5 +1,5 @@
 //! The reference interpreter: runs a program over the bytes of its state, with the runtime's own
-//! operations and blocks. What it does is what every back end must do.
+//! operations and blocks. Every back end must do the same.
 
 mod exchange;
 mod execute;

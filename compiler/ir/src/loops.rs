@@ -1,5 +1,5 @@
 //! What is known of FOR loops and of checked indices: which counters nothing but the loop writes, and
-//! what values they have. A back end may keep such a counter in a register beside its storage, and an
+//! what values they have. A back end may keep such a counter in a register in addition to its storage, and an
 //! index whose range follows from the loop's bounds, or from a check before, needs no check.
 
 use crate::alias::{self, Frame};

@@ -30,7 +30,7 @@ pub enum Projection {
     /// An element of an array. `index` is a LINT in the array's own bounds; outside of them it
     /// faults with IndexOutOfRange at `at`.
     Index { index: Box<Expr>, at: Location },
-    /// What the reference points to that the place up to here holds. What is looked at in the end is
+    /// The target of the reference that the place up to here holds. Only the final target is
     /// checked: null, outside of the object, misaligned, and a view that is not allowed fault at `at`. In a FUNCTION
     /// that may be `Location::CALLER`: then they fault at the call.
     Deref { reference: Type, target: Type, at: Location },

@@ -64,7 +64,7 @@ pub struct Program {
     pub is_configured: bool,
 }
 
-/// A variable into which what lies at an input's address is copied before each scan.
+/// A variable into which the value at an input's address is copied before each scan.
 #[derive(Clone, Debug)]
 pub struct Bound {
     /// Of the PROGRAM whose instances hold it, unless the globals do.
@@ -311,7 +311,7 @@ impl Program {
         if self.instances.len() > 1 { starts.collect() } else { Vec::new() }
     }
 
-    /// Whether a routine handles faults, so that a scan may go on after one: turns that a loop has had are taken then
+    /// Whether a routine handles faults, so that a scan may continue after one: turns that a loop has had are taken then
     /// wherever it faults.
     pub fn handles_faults(&self) -> bool {
         let mut found = false;
@@ -397,7 +397,7 @@ impl Program {
     }
 
     /// The type of a structure's field or a standard block's pin; `None` for any other type, or
-    /// when there is no such member.
+    /// if the type does not have the member.
     pub fn member(&self, ty: Type, id: FieldId) -> Option<Type> {
         match ty {
             Type::Struct(structure) => self.structure(structure).fields.get(id.index()).map(|field| field.ty),
@@ -422,7 +422,7 @@ impl Program {
     }
 
     /// The first instance of a block that a variable of type `ty` is or holds, with the way to it:
-    /// `.motor`, `[…].timer`. `is_state` tells the states of POUs, which are instances, from
+    /// `.motor`, `[…].timer`. `is_state` distinguishes the states of POUs, which are instances, from
     /// structures, which are looked into.
     pub fn instance_in(&self, ty: Type, is_state: &impl Fn(StructId) -> bool) -> Option<(String, Type)> {
         match ty {

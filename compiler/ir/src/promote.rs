@@ -49,7 +49,7 @@ pub struct Gain<'a> {
     pub suits: &'a dyn Fn(&Statement) -> bool,
     /// Whether variables are taken that the loop only reads, while it stores elements of arrays.
     pub of_reads: bool,
-    /// Whether a WHILE or REPEAT is taken that can fault and stores no element of an array, nor behind a reference: where the
+    /// Whether a WHILE or REPEAT is taken that can fault and stores neither to an element of an array nor through a reference: where the
     /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
 }
@@ -333,7 +333,7 @@ impl Rewrite for Renamer<'_> {
         if let Some(it) = self.candidates.iter().find(|it| it.place.is_same_variable(place)) {
             *place = Place::local(it.local, place.ty);
         }
-        // What is behind a reference.
+        // A place reached through a reference.
         let way = place.projections.iter().position(|it| matches!(it, Projection::Deref { .. }));
         let holder = way.map(|at| (at, place.before(at, place.ty)));
         if let Some((at, holder)) = holder

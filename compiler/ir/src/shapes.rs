@@ -190,7 +190,7 @@ impl Shape<'_> {
     fn type_of(&self, place: &Place) -> Type {
         let mut ty = self.root(place.root);
         for projection in &place.projections {
-            ty = self.program.part(ty, projection).expect("verified IR: each part is there");
+            ty = self.program.part(ty, projection).expect("verified IR: each part exists");
         }
         ty
     }
@@ -241,7 +241,7 @@ impl Rewrite for Shape<'_> {
             if let Projection::Index { index, .. } = projection {
                 self.check(ty, index);
             }
-            ty = self.program.part(ty, projection).expect("verified IR: each part is there");
+            ty = self.program.part(ty, projection).expect("verified IR: each part exists");
         }
         if self.program.is_open(place.ty) {
             place.ty = ty;

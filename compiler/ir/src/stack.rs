@@ -1,5 +1,5 @@
 //! How much of the stack a call of a routine takes in native code: its locals, the strings and other
-//! values that its statements make on the way, and what the code generator keeps beside them. It is
+//! values that its statements make on the way, and what the code generator keeps in addition. It is
 //! never less than that; a test compares it with the frames that are made.
 
 use crate::{Argument, Expr, ExprKind, Place, Program, Projection, Routine, Statement, StatementKind, Type};
@@ -135,7 +135,7 @@ impl Taken<'_> {
             ExprKind::AddressOf(place) => self.place(place),
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|it| self.expr(it));
-                // The runtime's function writes its result where it is told to.
+                // The runtime's function writes its result to a given address.
                 if op.can_fault() {
                     self.make(expr.ty);
                 }

@@ -1,5 +1,5 @@
 //! What a power cycle, IDLE -> RUN and a reset leave of each variable, by the system of the file
-//! that declares it. The map tells hosts, and the front end builds prescans by it.
+//! that declares it. The map has it for hosts, and the front end builds prescans by it.
 
 use crate::{FieldId, Place, Program, Projection, Retain, Routine, StructId, Type};
 use staunch_runtime::{BlockInfo, Keeps, Pin, Retention};
@@ -64,7 +64,7 @@ impl<'p> Startup<'p> {
         if self.is_retentive(field.ty) {
             return Fate::Whole;
         }
-        // An address is no data that outlives the program.
+        // An address is not data that outlives the program.
         if self.is_reference(field.ty) {
             return Fate::Anew;
         }

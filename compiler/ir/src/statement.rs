@@ -32,7 +32,7 @@ pub enum StatementKind {
         otherwise: Block,
     },
     /// WHILE and REPEAT: runs `body` and then `continuing`, forever. `Exit` leaves it; `Continue`
-    /// goes on with `continuing`, which itself holds `Exit` but no `Continue`. Each turn takes one
+    /// continues with `continuing`, which itself holds `Exit` but no `Continue`. Each turn takes one
     /// of the scan's turns: `body` holds a `Turn` outside of inner blocks, unless each turn
     /// [divides](crate::turns::divides) what the loop ends for, or `count` has taken all of them.
     Loop {
@@ -94,7 +94,7 @@ pub enum StatementKind {
 
 /// A FOR loop goes by its variable: `counter` is given `first`, then `last` and `step` are evaluated,
 /// once. Before each turn the counter is compared with `last`; after it, it is stepped. What a body,
-/// a callee or an alias writes to the counter, the loop goes on from.
+/// a callee or an alias writes to the counter, the loop continues from.
 ///
 /// A step out of the counter's `range` ends the loop, with the counter as it is, if it is past `last`;
 /// else it faults with SubrangeViolated. A variable step of 0 faults with ZeroStep before the first turn.
@@ -157,7 +157,7 @@ pub struct Count {
     pub step: i128,
     /// Of the counter's type.
     pub bound: Expr,
-    /// 0; or -1 or 1 where the loop goes on while the counter is below or above its bound.
+    /// 0; or -1 or 1 where the loop continues while the counter is below or above its bound.
     pub offset: i128,
     pub taking: Taking,
 }

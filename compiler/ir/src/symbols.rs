@@ -1,6 +1,6 @@
-//! The map: which variable lies where, as text that a host, a trace or a debugger reads.
+//! The map: the place of each variable, as text that a host, a trace or a debugger reads.
 //!
-//! One record a line, fields apart by tabs, `-` for what is absent. Types are structural (an
+//! One record a line, fields separated by tabs, `-` for an absent one. Types are structural (an
 //! array names its element's type), so the map grows with declarations, not with elements.
 
 use crate::layout::Layout;
@@ -262,7 +262,7 @@ impl Map<'_> {
         Ok(())
     }
 
-    /// Where a variable lies in the machine, and the attributes of the field it is; `None` for
+    /// Where a variable is in the machine, and the attributes of the field it is; `None` for
     /// one that lives for a call.
     fn storage(
         &self,
@@ -290,7 +290,9 @@ impl Map<'_> {
                     ty = element;
                 }
                 (Projection::Index { .. }, _) => unreachable!("verified IR: an array is indexed"),
-                (Projection::Deref { .. }, _) => unreachable!("verified IR: a variable is behind no reference"),
+                (Projection::Deref { .. }, _) => {
+                    unreachable!("verified IR: a variable is not reached through a reference")
+                }
             }
         }
         match view {

@@ -128,7 +128,7 @@ pub fn divides(frame: &Frame<'_>, body: &[Statement], continuing: &[Statement]) 
     conditions.into_iter().filter_map(size_test).any(is_left)
 }
 
-/// A variable that is tested for its size, and whether it is large where the condition holds. What is small then includes 0, and all below
+/// A variable that is tested for its size, and whether it is large where the condition holds. A small value then includes 0, and all below
 /// it where the test is one of order.
 fn size_test(condition: &Expr) -> Option<(&Place, bool)> {
     let ExprKind::Apply(op, operands) = &condition.kind else { return None };

@@ -12,7 +12,7 @@ pub enum Type {
     /// A STRING or WSTRING.
     String(StringType),
     Enum(EnumId),
-    /// An integer type within limits. What is written to such a variable is checked, or constant.
+    /// An integer type within limits. A value written to such a variable is checked, or constant.
     Subrange(Elementary, BoundsId),
     Array(ArrayId),
     /// A user's structure, or the state of a PROGRAM or FUNCTION_BLOCK, or the globals.
@@ -80,7 +80,7 @@ impl Type {
     }
 }
 
-/// The type of a reference. All are stored and followed alike; the word says how the source uses it.
+/// The type of a reference. All are stored and dereferenced in the same way; the word says how the source uses it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct RefType {
     pub kind: RefKind,
@@ -221,7 +221,7 @@ pub struct Struct {
     /// What the source declares that is some bits of a field: the members of a UNION, and BITs. Such a
     /// field is an integer or bit string, or an array of them, and has a name of its own.
     pub overlays: Vec<Overlay>,
-    /// It lies at a multiple of so many bytes, also where its fields ask for less; a power of two.
+    /// Its address is a multiple of so many bytes, also where its fields ask for less; a power of two.
     pub align: u64,
 }
 

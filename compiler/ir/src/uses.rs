@@ -38,7 +38,7 @@ pub enum Part {
     ComparedTimes,
     /// A timer in scans that are not a whole number of milliseconds apart. No program notes it: that is a matter of its run.
     PartsOfMillisecond,
-    /// A number with a fraction that a REAL does not hold exactly, beside a REAL.
+    /// A number with a fraction that a REAL does not hold exactly, in an operation with a REAL.
     FractionBesideReal,
 }
 
@@ -66,7 +66,7 @@ impl Part {
             Self::DivisionByZero => "integer division by 0",
             Self::ComparedTimes => "a comparison of TIMEs",
             Self::PartsOfMillisecond => "a timer, with scans that are not a whole number of milliseconds apart",
-            Self::FractionBesideReal => "a number with a fraction beside a REAL",
+            Self::FractionBesideReal => "a number with a fraction in an operation with a REAL",
         }
     }
 }
@@ -94,7 +94,7 @@ impl Use {
     }
 }
 
-/// What a program uses, each with the first place in its source. What was a constant expression is among it.
+/// What a program uses, each with the first place in its source. Operations of constant expressions are included.
 #[derive(Clone, Debug, Default)]
 pub struct Uses(BTreeMap<Use, Location>);
 

@@ -1,5 +1,5 @@
 //! Loops whose bodies are small: turns are taken for several of them at once, and the body is there as often.
-//! Where fewer are left than that, a loop of single turns goes on, up to the one that faults. So the turn of a
+//! Where fewer are left than that, a loop of single turns continues, up to the one that faults. So the turn of a
 //! fault is the same, and what is left of the turns is right wherever somebody looks.
 
 use crate::control::Control;
@@ -40,7 +40,7 @@ impl<'p> Function<'_, 'p> {
         true
     }
 
-    /// From the first turn on, which is there, in the block `head`. Whether control goes on in `after`.
+    /// From the first turn on, which exists, in the block `head`. Whether control continues in `after`.
     pub(crate) fn turns_at_once(
         &mut self,
         control: &Control<'p>,
@@ -83,7 +83,7 @@ impl<'p> Function<'_, 'p> {
         self.one_by_one(control, frame, few, body, continuing) || is_left
     }
 
-    /// One turn, after which the next one begins where the code goes on.
+    /// One turn, after which the next one begins where the code continues.
     fn one_of_several(
         &mut self,
         control: &Control<'p>,

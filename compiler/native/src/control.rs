@@ -18,7 +18,7 @@ pub(crate) struct Running<'p> {
     pub(crate) it: &'p For,
     pub(crate) repr: Repr,
     pub(crate) at: Location,
-    /// The counter, beside its storage, where nothing but the loop writes it.
+    /// The counter, in addition to its storage, if only the loop writes it.
     pub(crate) register: Option<Variable>,
     /// The storage, where it is a variable too: it is given the counter when the loop has ended.
     pub(crate) late: Option<Variable>,

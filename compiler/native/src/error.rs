@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// Why there is no code. Verified IR for a supported target has no cause for it but size.
+/// Why no code was made. With verified IR and a supported target, only size can be the cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Error {
     /// No code is made for this target; the sentence says what to do.
@@ -20,7 +20,9 @@ impl fmt::Display for Error {
         match self {
             Self::Target(sentence) => f.write_str(sentence),
             Self::Code { function, reason } => write!(f, "no native code for {function}: {reason}"),
-            Self::External(name) => write!(f, "{name} is implemented outside: make an object, and link it"),
+            Self::External(name) => {
+                write!(f, "{name} is implemented outside the program: build an object, and link the implementation")
+            }
             Self::Output(reason) => write!(f, "no native code: {reason}"),
         }
     }

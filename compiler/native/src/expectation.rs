@@ -45,7 +45,7 @@ fn anywhere((object, offset, size): (u32, u64, u64), of_number: u64) -> Option<E
     Some(Expectation { object, offset: u32::try_from(offset).ok()?, which })
 }
 
-/// `None` where the elements are apart from each other.
+/// `None` if there are gaps between the elements.
 fn expectation(target: &Target) -> Option<Expectation> {
     let mut which = Which::One;
     for step in &target.way {

@@ -40,7 +40,7 @@ impl Function<'_, '_> {
         Some((self.builder.block_params(found)[0], slow))
     }
 
-    /// Goes to `found` with the offset if the variable is there, else to the other block.
+    /// Goes to `found` with the offset if the variable is at that place, else to the other block.
     fn compare(
         &mut self,
         it: &Expectation,
@@ -70,7 +70,7 @@ impl Function<'_, '_> {
         self.ins().brif(is_there, found, &[BlockArg::Value(offset)], otherwise, &[]);
     }
 
-    /// Whether a variable begins so far behind the first, which is shifted to the left.
+    /// Whether a variable begins so far after the first, which is shifted to the left.
     fn is_one(&mut self, which: Which, behind: clif::Value, shift: i64) -> clif::Value {
         match which {
             Which::One => self.ins().icmp_imm_u(IntCC::Equal, behind, 0),

@@ -51,7 +51,7 @@ impl Function<'_, '_> {
         [by_pointer(words), by_pointer(state)]
     }
 
-    /// A scalar or string behind a reference, but for a standard block's pin, whose block is found whole.
+    /// A scalar or string reached through a reference, except a standard block's pin, whose block is found whole.
     pub(crate) fn reached(&mut self, place: &Place) -> Option<Reached> {
         let program = self.module.program;
         let it = followed(program, place)?;
@@ -84,7 +84,7 @@ impl Function<'_, '_> {
         it.pin.map_or(kind, |(block, pin)| class(Type::Block(block), pin))
     }
 
-    /// Steps from a distance behind a variable, and the type of what they lead to.
+    /// Steps from a distance after the start of a variable, and the type of what they lead to.
     fn steps(&mut self, from: Option<clif::Value>, ty: Type, steps: &[Projection]) -> (Option<clif::Value>, Type) {
         let (mut fixed, mut ty, mut distance) = (0, ty, from);
         for projection in steps {
@@ -128,7 +128,7 @@ impl Function<'_, '_> {
         self.ins().imul_imm_s(position, stride)
     }
 
-    /// Calls what may fault, and goes on where it does not.
+    /// Calls a function that may fault, and continues if it does not.
     pub(crate) fn checked(&mut self, symbol: &str, arguments: &[(AbiParam, clif::Value)], at: Location) {
         let kind = self.call_runtime(symbol, arguments, Some(AbiParam::new(types::I8).uext()));
         self.fault_of_kind(kind.expect("an access returns its fault"), at);
@@ -149,7 +149,7 @@ impl Function<'_, '_> {
             let address = self.there(it.way, offset, it.kind);
             return self.load(it.ty, address);
         }
-        let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
+        let repr = self.module.program.repr(it.ty).expect("a scalar reached through a reference");
         let Some((pointer, slow)) = self.in_line(it) else { return self.load_by_runtime(it, repr) };
         let done = self.builder.create_block();
         self.builder.append_block_param(done, clif_type(repr));
@@ -202,7 +202,7 @@ impl Function<'_, '_> {
             let address = self.there(it.way, offset, it.kind);
             return self.store(value, address);
         }
-        let repr = self.module.program.repr(it.ty).expect("a scalar behind a reference");
+        let repr = self.module.program.repr(it.ty).expect("a scalar reached through a reference");
         let Some((pointer, slow)) = self.in_line(it) else { return self.store_by_runtime(it, repr, value) };
         let done = self.builder.create_block();
         self.ins().store(anywhere(), value, pointer, 0);
@@ -228,7 +228,7 @@ impl Function<'_, '_> {
         [words, state, reference, distance, view, size, by_pointer(value)]
     }
 
-    /// A copy of the string behind a reference, in the frame.
+    /// A copy, in the frame, of a string reached through a reference.
     pub(crate) fn load_reached_text(&mut self, it: Reached, ty: StringType) -> Address {
         let shape = self.module.layout.shape(it.ty);
         let (space, out) = self.space(shape.size);
@@ -242,7 +242,7 @@ impl Function<'_, '_> {
         space
     }
 
-    /// Writes a string to behind a reference, out of a copy: it may be a part of the same memory.
+    /// Writes a string through a reference, from a copy: it may be in the same memory.
     pub(crate) fn store_reached_text(&mut self, it: Reached, value: &Expr) {
         let shape = self.module.layout.shape(value.ty);
         let (space, from) = self.space(shape.size);
@@ -255,7 +255,7 @@ impl Function<'_, '_> {
         self.checked(symbol, &arguments, it.at);
     }
 
-    /// Where a variable behind a reference lies, to be handed on whole.
+    /// Where a variable reached through a reference is, to be passed on whole.
     pub(crate) fn found(&mut self, place: &Place) -> Address {
         let program = self.module.program;
         let it = followed(program, place).expect("a place that leads through a reference");
@@ -337,7 +337,7 @@ impl Function<'_, '_> {
     }
 }
 
-/// A number behind a reference is at any address: all targets read and write it there.
+/// A number reached through a reference may be at any address: all targets read and write it there.
 fn anywhere() -> MemFlagsData {
     MemFlagsData::new().with_notrap()
 }

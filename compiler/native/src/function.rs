@@ -101,7 +101,7 @@ pub(crate) enum Few {
 }
 
 impl LoopFrame {
-    /// Of a loop that goes on there, and has no end of a turn yet.
+    /// Of a loop that continues there, and has no end of a turn yet.
     pub(crate) fn to(after: clif::Block) -> Self {
         Self { next: after, after, is_continued: false, is_left: false, few: Few::No, taken: None }
     }
@@ -321,7 +321,7 @@ impl<'a, 'p> Function<'a, 'p> {
         }
     }
 
-    /// What is returned beside a fault's code.
+    /// What is returned with a fault's code.
     pub(crate) fn no_result(&mut self) -> Option<clif::Value> {
         let (_, ty) = self.result?;
         let repr = self.module.program.repr(ty)?;

@@ -58,7 +58,7 @@ impl Function<'_, '_> {
         question(Known { program: self.module.program, loops: &self.counters, checked: &checked })
     }
 
-    /// An index that is within its bounds as a value and a constant behind it, which is at most so many, or as a constant
+    /// An index that is within its bounds as a value plus a constant, which is at most so many, or as a constant
     /// alone.
     pub(crate) fn sum(&self, index: clif::Value, most: u64) -> (Option<clif::Value>, i64) {
         let (mut start, mut further) = (index, 0_i64);

@@ -1,5 +1,5 @@
 //! The operations that are a few instructions: emitted in place, with the meaning of the
-//! runtime's function. A test compares both over all edge values. What has no row here is a call.
+//! runtime's function. A test compares both over all edge values. An operation without a row here is a call.
 
 use crate::function::Function;
 use crate::operands::Operands;
@@ -220,7 +220,7 @@ fn constant_count(f: &Function<'_, '_>, o: &Operands) -> Option<i128> {
     })
 }
 
-/// The lower half goes on by a distance, and wraps; the upper half stays.
+/// The lower half advances by a distance, and wraps; the upper half stays.
 fn advance(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
     let (value, distance) = (o.values[0], o.values[1]);
     let ty = clif_type(o.repr);

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! It applies to a routine whose code is a few instructions, but for what is away from the common path, and which keeps little in
-//! a frame of its own. What it stores, and in which order, stays as it is, and so does the code of a fault: the callee's return
+//! a frame of its own. Its stores and their order stay as they are, and so does the code of a fault: the callee's return
 //! becomes a jump to what follows the call. It may not assume that the callee is still called elsewhere: its own function stays,
 //! and a linker drops it.
 
@@ -23,7 +23,7 @@ use std::collections::HashMap;
 const SMALL: usize = 96;
 /// So is one of more than these, with those away from the common path.
 const MOST: usize = 256;
-/// Bytes of frames that a function gets beside its own: [`stack`](staunch_ir::stack) allows for so many.
+/// Bytes of frames that a function gets in addition to its own: [`stack`](staunch_ir::stack) allows for so many.
 const MOST_OF_FRAMES: u32 = 128;
 /// By so many instructions a function may grow in all cases, and beyond that by a part of its own.
 const GROWTH: usize = 512;

@@ -33,7 +33,7 @@ impl Jit {
     /// Compiles a verified program for this machine.
     ///
     /// # Errors
-    /// If there is no back end for this machine, a function is too large for it, or something is called that is
+    /// If this machine is not supported, a function is too large for it, or something is called that is
     /// implemented outside.
     pub fn new(program: &Program) -> Result<Self, Error> {
         if let Some(external) = program.externals().first() {

@@ -153,7 +153,7 @@ fn is_assigned(statement: &Statement, pointer: &Place) -> bool {
     matches!(&statement.kind, StatementKind::Assign { target, .. } if target.is_same_variable(pointer))
 }
 
-/// Whether the loop around takes a turn in a statement: that is there once in each copy of its body.
+/// Whether the loop around takes a turn in a statement, which exists once in each copy of its body.
 fn takes_turn(statement: &Statement) -> bool {
     match &statement.kind {
         StatementKind::Turn => true,

@@ -124,7 +124,7 @@ impl<'p> Function<'_, 'p> {
         self.first_turn_on(control, counted, after, body, continuing) || is_left
     }
 
-    /// A large body is there once: where `few` is true, it takes no turns.
+    /// A large body exists once: where `few` is true, it takes no turns.
     fn counted_unless(
         &mut self,
         few: clif::Value,
@@ -142,7 +142,7 @@ impl<'p> Function<'_, 'p> {
         self.one_by_one(control, frame, turn, body, continuing)
     }
 
-    /// A loop from its first turn on, whose block is open and not sealed. Whether control goes on after it.
+    /// A loop from its first turn on, whose block is open and not sealed. Whether control continues after it.
     fn first_turn_on(
         &mut self,
         control: &Control<'p>,

@@ -121,7 +121,7 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
-    /// A loop from its first turn on, whose block is open. Whether control goes on after it.
+    /// A loop from its first turn on, whose block is open. Whether control continues after it.
     pub(crate) fn one_by_one(
         &mut self,
         control: &Control<'p>,

@@ -52,7 +52,7 @@ pub(crate) struct ModuleEmitter<'p> {
     imports: HashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: HashMap<Vec<u8>, DataId>,
-    /// A scan may go on after a fault.
+    /// A scan may continue after a fault.
     pub(crate) handles_faults: bool,
     /// Where something follows or makes a reference.
     references: Option<References>,
@@ -268,7 +268,7 @@ fn reason(error: &dyn core::error::Error) -> String {
     text
 }
 
-/// A local symbol, for debuggers and disassemblers; the number keeps names apart.
+/// A local symbol, for debuggers and disassemblers; the number makes names unique.
 fn symbol(id: RoutineId, routine: &Routine) -> String {
     let name = routine.name.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
     match routine.kind {

@@ -7,12 +7,12 @@ use staunch_ir::Type;
 use staunch_ir::reference::view;
 use staunch_runtime::reference::{CLASS, ORIGIN, View, encode};
 
-/// Where the table of objects has its first one, and how far they are apart, in bytes.
+/// Where the table of objects has its first one, and their distance, in bytes.
 const OBJECTS_AT: i32 = encode::HEAD_BYTES;
 const OBJECT_BYTES: i64 = encode::OBJECT_BYTES;
 
 impl Function<'_, '_> {
-    /// Where a number lies in an object that is nothing but numbers, and the block for all else, which is still to
+    /// Where a number is in an object that is nothing but numbers, and the block for all else, which is still to
     /// be filled: what the runtime says of such an object, in line.
     pub(crate) fn plain(&mut self, it: Reached) -> Option<(clif::Value, clif::Block)> {
         let View::Number(size) = view(self.module.program, it.ty) else { return None };
@@ -49,7 +49,7 @@ impl Function<'_, '_> {
     }
 
     /// Goes to the block that is returned, with the offset of an object that is exactly of the type and in no pool: what
-    /// the runtime says of such an object, in line. All else goes on in the block that is current then.
+    /// the runtime says of such an object, in line. Everything else continues in the block that is current then.
     pub(crate) fn whole(
         &mut self,
         reference: clif::Value,

@@ -96,7 +96,7 @@ impl Function<'_, '_> {
             }
             return self.element_at(array, position, stride);
         }
-        // So far behind, at most, that it is no further than the array is long.
+        // The distance is at most the length of the array.
         match self.sum(index, bounds.high.abs_diff(bounds.low)) {
             (None, index) => array.plus(index.abs_diff(bounds.low) * stride),
             (Some(index), further) => {

@@ -1,4 +1,4 @@
-//! Checks that have been made on the way to where the code goes on: of an index that is a value of a register, one check of
+//! Checks that have been made on the way to where the code continues: of an index that is a value of a register, one check of
 //! its bounds does for what follows it without a branch.
 
 use cranelift_codegen::ir as clif;
@@ -7,7 +7,7 @@ use staunch_ir::ArrayId;
 /// An index, and an array within whose bounds it is.
 pub(crate) type Within = (clif::Value, ArrayId);
 
-/// More are forgotten, so that looking for one is no effort.
+/// More are forgotten, so that the search stays cheap.
 const MOST: usize = 16;
 
 /// What is known in one block. Blocks are those that are current.

@@ -66,7 +66,7 @@ impl Target {
     /// A target by its Rust triple, or by `x86_64`, `aarch64` or `riscv64` for Linux.
     ///
     /// # Errors
-    /// If no native code is made for it; the text tells a user what to do.
+    /// If native code is not supported for it; the text says what a user can do.
     pub fn parse(name: &str) -> Result<Self, Error> {
         let name = match name {
             "x86_64" => Self::SUPPORTED[0],

@@ -34,7 +34,7 @@ impl Function<'_, '_> {
             ExprKind::Text(text) => self.text_constant(text),
             ExprKind::Load(place) if place.is_followed() => {
                 let ty = string_type(place.ty);
-                let reached = self.reached(place).expect("a string behind a reference");
+                let reached = self.reached(place).expect("a string reached through a reference");
                 Text { address: self.load_reached_text(reached, ty), ty, is_clear: false }
             }
             ExprKind::Load(place) => Text { address: self.address(place), ty: string_type(place.ty), is_clear: true },
@@ -151,7 +151,7 @@ impl Function<'_, '_> {
         op.operands().iter().zip(operands).map(argument).collect()
     }
 
-    /// A conversion between capacities: only to a smaller one is there something to do.
+    /// A conversion between capacities: only one to a smaller capacity needs code.
     fn text_cut(&mut self, operand: &Expr, ty: Type) -> Text {
         let text = self.text(operand);
         if text.ty.capacity <= string_type(ty).capacity {
@@ -164,7 +164,7 @@ impl Function<'_, '_> {
         Text { address, ty, is_clear: false }
     }
 
-    /// Assigns to the variable `place`, which lies at `target`.
+    /// Assigns to the variable `place`, which is at `target`.
     pub(crate) fn assign_text(&mut self, value: &Expr, place: &Place, target: Address) {
         let frame = Frame::of(self.module.program, self.routine);
         let is_made = matches!(value.kind, ExprKind::ApplyText(..) | ExprKind::Convert(..));

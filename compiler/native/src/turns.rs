@@ -143,7 +143,7 @@ impl<'p> Function<'_, 'p> {
     pub(crate) fn is_few(&mut self, way: &Way) -> clif::Value {
         let length = self.length(way);
         let is_few = match way.most_of_few() {
-            // 64 bits hold the way between narrower values, with its sign: it is below zero where there is no turn.
+            // 64 bits hold the way between narrower values, with its sign: it is below zero if no turn runs.
             Some(few) if way.is_narrow() => {
                 let few = self.integer(types::I64, few.into());
                 return self.ins().icmp(IntCC::SignedLessThan, length, few);
@@ -165,11 +165,11 @@ impl<'p> Function<'_, 'p> {
         self.ins().bor(past, is_few)
     }
 
-    /// Whether the loop has turns, but few, for a way of which two instructions tell it.
+    /// Whether the loop has turns, but few, for a way for which two instructions decide it.
     pub(crate) fn is_few_and_some(&mut self, way: &Way) -> Option<clif::Value> {
         let few = way.most_of_few().filter(|_| way.is_narrow())?;
         let length = self.length(way);
-        // A way on which there is no turn is below zero, which is much without a sign.
+        // A way without a turn is below zero, which is large as an unsigned number.
         let before = u64::from(way.is_before);
         let length = if way.is_before { self.ins().iadd_imm_s(length, -1) } else { length };
         let few = self.integer(types::I64, (few - before).into());

@@ -8,7 +8,7 @@
 //!
 //! FOR i := 0 TO 99 DO               i := 0;
 //!     a[i] := i;                    again: a[i] := i; … a[i + 9] := i + 9;
-//! END_FOR                           i := i + 10; goes on at `again` unless i > 99
+//! END_FOR                           i := i + 10; continues at `again` unless i > 99
 //! ```
 //!
 //! It applies to a loop whose first and last value are constants, whose counter nothing else writes, and in which there is no
@@ -73,7 +73,7 @@ impl<'p> Function<'_, 'p> {
         self.join(&[if is_left { Flow::Continues } else { Flow::Leaves }], after)
     }
 
-    /// Whether control goes on after it.
+    /// Whether control continues after it.
     fn all_in_line(&mut self, running: &Running<'p>, it: Unrolling, after: clif::Block) -> bool {
         let mut is_left = false;
         let mut value = it.first;
@@ -117,7 +117,7 @@ impl<'p> Function<'_, 'p> {
         is_left
     }
 
-    /// One turn; the next one begins where the code goes on.
+    /// One turn; the next one begins where the code continues.
     fn turn_in_line(&mut self, running: &Running<'p>, after: clif::Block, is_left: &mut bool) -> Flow {
         self.release_temporaries();
         self.loops.push(LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) });

@@ -3,9 +3,9 @@
 //! that overlap are places below one root (the instance, or one shared parameter); array subscripts on
 //! the way are checked at the call and arrive by value.
 //!
-//! A callee that uses globals is handed all of them, unless what it is handed besides lies in them:
+//! A callee that uses globals is passed all of them, unless its other arguments are in them:
 //! then it gets those that it uses one by one, each a parameter of its own. That form of it serves
-//! all such calls, and where there is one the declared form calls it, so that its code is there once.
+//! all such calls, and where there is one the declared form calls it, so that its code exists once.
 //!
 //! Both programs mean the same: the result is IR, and verifies and interprets like its source.
 
@@ -119,7 +119,7 @@ impl Separator<'_> {
         Routine { locals: body.locals, body: rewritten, ..source.clone() }
     }
 
-    /// The declared form of a routine that has its code in the form with the globals apart.
+    /// The declared form of a routine that has its code in the form with separate globals.
     fn forward(&mut self, id: RoutineId) -> Routine {
         let source = self.source.routine(id);
         let fields = self.effects[id.index()].names.globals().map(|it| (it, Binding::Own)).collect();
@@ -283,7 +283,7 @@ impl Separator<'_> {
     fn call(&mut self, body: &mut Body, call: Call, out: &mut Block) {
         let globals: Vec<_> =
             self.globals_of(call.callee).into_iter().map(|(field, place)| (field, body.place(&place))).collect();
-        // The globals as a whole would be a second way to what lies in them.
+        // The globals as a whole would be a second way to the variables in them.
         let in_globals = call.references().iter().any(|it| it.place.root == Root::Globals);
         let apart = !globals.is_empty() && (in_globals || body.globals.is_some());
         let call = Call { globals: if apart { globals } else { Vec::new() }, ..call };

@@ -1,6 +1,6 @@
 //! FOR loops whose counter nobody looks at while they run: `for _ in 0..8`, and the counter's last value after that.
 //!
-//! A loop that counts from 0 by ones is what LLVM's passes over loops start from, and the counter is no variable that is alive
+//! A loop that counts from 0 by ones is what LLVM's passes over loops start from, and the counter is not a variable that is alive
 //! through it. So it finds that a loop over the bits of a number computes a CRC, and takes a table.
 
 use proc_macro2::{Literal, TokenStream};

@@ -99,7 +99,7 @@ fn note_block(block: &Block, path: &mut Path, found: &mut HashMap<LocalId, Menti
     for (at, statement) in block.iter().enumerate() {
         path.push(at);
         visit::accesses(statement, &mut |place, access| {
-            // What lies behind a reference is not the variable that holds it.
+            // The target of a reference is not the variable that holds it.
             if let Root::Local(id) = place.root
                 && !place.is_followed()
             {

@@ -15,7 +15,7 @@ use crate::look_up::{LookUp, look_ups};
 use crate::names::{Names, ident};
 use crate::text;
 
-/// The constants of a program that are no part of its state: those that have one value in all instances.
+/// The constants of a program that are not part of its state: those that have one value in all instances.
 pub type Constants = BTreeSet<(StructId, FieldId)>;
 
 pub struct Emitter<'p> {
@@ -28,12 +28,12 @@ pub struct Emitter<'p> {
     pub targets: Targets<'p>,
     /// The functions that look there, by the types that they look for.
     pub look_ups: Vec<LookUp>,
-    /// What is no part of the state.
+    /// Constants that are not part of the state.
     pub constants: Constants,
-    /// The program has references: what several paths may reach lies in cells, and each routine is handed
+    /// The program has references: variables that several paths may reach are in cells, and each routine gets
     /// the whole machine.
     pub shared: bool,
-    /// A scan may go on after a fault.
+    /// A scan may continue after a fault.
     pub handles_faults: bool,
 }
 

@@ -1,5 +1,5 @@
 //! Expressions. Whatever is printed in Rust's own words means exactly what the runtime's function
-//! of that name does; everything else calls that function.
+//! with the same name does; everything else calls that function.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -133,7 +133,7 @@ impl Function<'_> {
         Code::new(quote!(#a #sign #b), level)
     }
 
-    /// `a && b` where `b` cannot fault, so that nobody can tell whether it was evaluated.
+    /// `a && b` where `b` cannot fault, so that it cannot be observed whether it was evaluated.
     fn logical(&self, op: Op, operands: &[Expr]) -> Code {
         if faults::expr_faults(self.emitter.program, &operands[1]) {
             return self.operator(op, operands);

@@ -36,7 +36,7 @@ struct Unit {
     is_bit: bool,
     /// What a subrange may be.
     range: Option<(i128, i128)>,
-    /// It lies in a cell.
+    /// It is in a cell.
     is_cell: bool,
 }
 
@@ -101,7 +101,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Of memory at an address, `%M`, what is no number is reached through its field alone.
+    /// In memory at an address, `%M`, a variable that is not a number is reached only through its field.
     fn io(&self) -> Vec<Io> {
         let globals = self.program.globals;
         let fields = self.program.structure(globals).fields.iter().enumerate();

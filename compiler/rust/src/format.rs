@@ -62,7 +62,7 @@ fn comment(text: &str) -> String {
     commented
 }
 
-/// Puts the macro around each loop that has the mark. rustfmt leaves what is in it, as it is no list of expressions.
+/// Puts the macro around each loop that has the mark. rustfmt leaves its contents, since they are not a list of expressions.
 fn strips(text: &str) -> String {
     if !text.contains(STRIPS) {
         return text.to_owned();
@@ -301,7 +301,7 @@ fn is_plain(item: &[&str], indent: usize) -> bool {
     let (broken, item) = item.split_at(head_length(item).saturating_sub(1));
     let Some((head, body)) = item.split_first() else { return true };
     let is_whole = body.is_empty() && !head.replace("{}", "").contains('{');
-    // Rows that are no structures may share lines.
+    // Rows that are not structures may share lines.
     let is_table = head.ends_with("= &[") && body.first().is_some_and(|it| it.ends_with('{'));
     let opens = head.ends_with('{') && !head.contains("!(") || is_table;
     let head_is_plain = head.len() <= WIDE && (is_whole || opens);
@@ -327,7 +327,7 @@ fn is_plain_line(line: &str) -> bool {
         && (!has_value(code) || structure(code).is_some_and(|(_, inner, _)| inner.len() <= SMALL_STRUCTURE))
 }
 
-/// Whether a line goes on with an expression: `- x`, which is no negative number in a table.
+/// Whether a line continues an expression: `- x`, which is not a negative number in a table.
 fn starts_with_operator(code: &str) -> bool {
     let (first, rest) = code.split_once(' ').unwrap_or_default();
     !first.is_empty() && !rest.is_empty() && first.chars().all(|it| "+-*/%<>=!^".contains(it))

@@ -221,12 +221,12 @@ impl Function<'_> {
         self.plan.locals[id.index()].mutable && !is_in_cells
     }
 
-    /// Whether a scalar or string lies in a cell, since a call gets a reference to it.
+    /// Whether a scalar or string is in a cell, since a call gets a reference to it.
     pub fn borrowed_scalar(&self, id: LocalId) -> bool {
         self.emitter.is_in_cell(self.routine.locals[id.index()].ty) && self.borrowed[id.index()]
     }
 
-    /// Arguments that lie in cells.
+    /// Arguments that are in cells.
     fn cells(&self) -> TokenStream {
         let params = self.routine.params.iter().zip(&self.names.params);
         let cells = params.filter_map(|(param, name)| match param.mode {
@@ -250,7 +250,7 @@ impl Function<'_> {
         }
     }
 
-    /// A name for a variable that the printer needs, apart from all of the user's.
+    /// A name for a variable that the printer needs, different from all of the user's.
     pub fn made_up(&self, wanted: &str, number: usize) -> Ident {
         let prefix = self.names.scope.unused_prefix(wanted);
         if number == 0 { ident(&prefix) } else { ident(&format!("{prefix}_{}", number + 1)) }

@@ -91,7 +91,7 @@ fn scan(emitter: &Emitter<'_>) -> TokenStream {
     }
 }
 
-/// What a routine is handed of the state beside its instance.
+/// What a routine is passed of the state in addition to its instance.
 fn world(emitter: &Emitter<'_>, routine: RoutineId) -> Option<TokenStream> {
     match (emitter.shared, emitter.effects[routine.index()].uses_globals()) {
         (true, _) => Some(quote!(self)),

@@ -6,7 +6,7 @@ use staunch_ir::{Address, ArrayId, FieldId, Repr, StructId, Type};
 
 use crate::emitter::Emitter;
 
-/// A number in what lies at an address.
+/// A number in the variable at an address.
 pub struct Part {
     /// As traces name it, `heads[1].ready`.
     pub name: String,

@@ -8,7 +8,7 @@ use crate::emitter::Emitter;
 
 /// `const` assertions on every structure's size and its fields' offsets.
 pub fn layout(emitter: &Emitter<'_>) -> String {
-    // Constants that are no part of the state make it another one than hosts know.
+    // Constants that are not part of the state make its layout differ from the one that hosts know.
     if !emitter.constants.is_empty() {
         return String::new();
     }

@@ -1,4 +1,4 @@
-//! IR to Rust: one readable, safe, `no_std` module a program. What it promises: it compiles
+//! IR to Rust: one readable, safe, `no_std` module a program. It compiles
 //! without warnings, cannot panic, and is the same text in every run.
 #![forbid(unsafe_code)]
 
@@ -78,7 +78,7 @@ pub enum Shape {
     /// A file of its own, with inner attributes at its top.
     File,
     /// The target of an `include!`, which takes no inner attributes: the text is in a module of
-    /// this name, and everything in it is exported beside it.
+    /// this name, and everything in it is also exported next to it.
     Include { module: String },
 }
 

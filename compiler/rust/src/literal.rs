@@ -8,7 +8,7 @@ use staunch_runtime::calendar::Day;
 use crate::names;
 use crate::precedence::{Code, Level};
 
-/// A literal as a person writes it; with its type's suffix where nothing else tells the type.
+/// A literal as a person writes it; with its type's suffix where nothing else determines the type.
 pub fn literal(ty: Elementary, value: Value, suffixed: bool) -> Code {
     let suffix = if suffixed { ty.repr().rust_name() } else { "" };
     match value {

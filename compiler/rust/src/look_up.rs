@@ -1,5 +1,5 @@
 //! Functions that look for what a reference leads to where it is expected: at the variables of its type whose
-//! addresses are taken. What is elsewhere, or looked at as something else, the table of objects decides.
+//! addresses are taken. The table of objects decides about targets elsewhere, or seen as another type.
 
 use proc_macro2::Ident;
 use staunch_ir::reference::{Target, Targets, looked_up};

@@ -104,7 +104,7 @@ impl At {
         self.then(format!("[{low}..{high}]"), Step::Element(count))
     }
 
-    /// What lies in the cell.
+    /// The contents of the cell.
     fn opened(&self) -> Self {
         self.then(String::new(), Step::Plain(quote!(.get())))
     }

@@ -306,7 +306,7 @@ pub fn screaming(name: &str) -> String {
 pub fn camel(name: &str) -> String {
     let mut camel = String::new();
     for word in words(name) {
-        // `Axis1_2` and `Axis12` stay apart.
+        // `Axis1_2` and `Axis12` stay different.
         if camel.ends_with(|it: char| it.is_ascii_digit()) && word.starts_with(|it: char| it.is_ascii_digit()) {
             camel.push('_');
         }

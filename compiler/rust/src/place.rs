@@ -53,7 +53,7 @@ impl Function<'_> {
                         continue;
                     }
                     let name = self.emitter.field_name(ty, *field);
-                    // A block lies in its cell as a whole.
+                    // A block is in its cell as a whole.
                     let read = (self.emitter.shared && matches!(ty, Type::Block(_))).then(|| quote!(.get()));
                     quote!(#tokens #read.#name)
                 }
@@ -67,7 +67,7 @@ impl Function<'_> {
         tokens
     }
 
-    /// A constant that is no part of the state: `Main::LIMIT`.
+    /// A constant that is not part of the state: `Main::LIMIT`.
     fn constant(&self, ty: Type, field: FieldId) -> Option<TokenStream> {
         let Type::Struct(id) = ty else { return None };
         let (name, constant) = (self.emitter.names.structure(id), self.emitter.constant_name(id, field)?);

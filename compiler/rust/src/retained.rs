@@ -26,7 +26,7 @@ impl Target {
         Self { tokens: quote!(#whole.#name), is_reference: false }
     }
 
-    /// What lies in the cell.
+    /// The contents of the cell.
     fn opened(&self) -> Self {
         let tokens = &self.tokens;
         Self { tokens: quote!(#tokens.get_mut()), is_reference: true }

@@ -1,4 +1,4 @@
-//! Programs with references: storage that several paths may reach lies in cells, each routine is handed the
+//! Programs with references: storage that several paths may reach is in cells, each routine gets the
 //! whole machine, and accesses through references are checked by the table of objects.
 
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -162,7 +162,7 @@ impl Function<'_> {
         ty
     }
 
-    /// How a scalar or string behind a reference is read; `None` for what is looked at whole.
+    /// How a scalar or string is read through a reference; `None` for what is looked at whole.
     pub fn load_followed(&self, place: &Place) -> Option<Code> {
         let program = self.emitter.program;
         let it = followed(program, place).filter(|it| it.pin.is_none())?;
@@ -227,7 +227,7 @@ impl Function<'_> {
         }))
     }
 
-    /// The variable behind a reference, as `&T`.
+    /// The target of a reference, as `&T`.
     pub fn found(&self, place: &Place) -> TokenStream {
         let it = followed(self.emitter.program, place).expect("a place that leads through a reference");
         let way = self.way(&it);
@@ -295,7 +295,7 @@ impl Function<'_> {
     }
 }
 
-/// How a reference is followed to what lies behind it.
+/// How a reference is followed to its target.
 #[derive(Default)]
 struct Way {
     /// Statements that come before: what is found by a search or a check, found once.

@@ -109,7 +109,7 @@ impl Folded<'_> {
         if self.negated { not(value) } else { value }
     }
 
-    /// On what a loop goes on that starts by leaving where the value is TRUE.
+    /// The condition for continuing in a loop that starts by leaving if the value is TRUE.
     pub fn stay(&self) -> Code {
         let value = self.value.clone();
         if self.negated { value } else { not(value) }

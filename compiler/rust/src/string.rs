@@ -193,7 +193,7 @@ impl Function<'_> {
             ExprKind::ApplyText(..) | ExprKind::Convert(..) if is_text => {
                 (self.typed_text(operand).tokens, quote!(#name.#as_units()))
             }
-            // What lies in a cell is copied out.
+            // The contents of a cell are copied out.
             ExprKind::Load(_) if self.emitter.shared && is_text => {
                 (self.expr(operand).tokens, quote!(#name.#as_units()))
             }

@@ -202,7 +202,7 @@ load_retained := 1;
 END_FUNCTION
 ";
 
-/// Saves after a scan, loads into a new program, and shows what is there; then what a damaged, a foreign and a
+/// Saves after a scan, loads into a new program, and shows the values; then what a damaged, a foreign and a
 /// forged record do.
 const RETAINING_MAIN: &str = r#"
 use staunch_runtime::{Context, crc32};
@@ -247,7 +247,7 @@ fn main() {
 
 #[test]
 fn retained_variables_go_to_bytes_and_back() {
-    // 24 beside the values; on, name, color, colors, levels, parts, row: 1 + 7 + 2 + 4 + 8 + 12 + 6 bytes;
+    // 24 in addition to the values; on, name, color, colors, levels, parts, row: 1 + 7 + 2 + 4 + 8 + 12 + 6 bytes;
     // whole: kept, and the pins of its timer: 8 + 1 + 8 + 1 + 8 + 1 + 8; of each station 2; total 4;
     // of the counter CU, RESET and PV, since the rest starts anew; and the last variable, 2.
     let counter = 1 + 1 + 2;
@@ -394,7 +394,7 @@ total LINT: -9
         let options = Options { state, names: true, ..Options::default() };
         assert_eq!(output_as(folder, NAMED, NAMED_MAIN, &options), expected);
     }
-    // What lies in cells is read out of them; the text of who asks for no names has none.
+    // Variables in cells are read from them; without a request for names the text has none.
     let options = Options { names: true, ..Options::default() };
     let referred = format!("{NAMED}\n{REFERRED}");
     let main = NAMED_MAIN.replace(

@@ -41,7 +41,7 @@ unsafe extern "C" fn staunch_reference_address(words: *const u32, offset: u64, s
 /// Reads a value of `size` bytes to `out`.
 ///
 /// # Safety
-/// As [`table`] and [`memory`] say; `out` has `size` bytes, and is no part of the state.
+/// As [`table`] and [`memory`] say; `out` has `size` bytes, and is not part of the state.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn staunch_reference_load(
     words: *const u32,
@@ -62,7 +62,7 @@ unsafe extern "C" fn staunch_reference_load(
 /// Writes a value of `size` bytes.
 ///
 /// # Safety
-/// As [`table`] and [`memory`] say; `value` has `size` bytes, and is no part of the state.
+/// As [`table`] and [`memory`] say; `value` has `size` bytes, and is not part of the state.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn staunch_reference_store(
     words: *const u32,
@@ -151,7 +151,7 @@ texts! {
 /// Writes to `out` the offset in the state of a variable of the wanted type.
 ///
 /// # Safety
-/// As [`table`] and [`memory`] say; `out` can be written, and is no part of the state.
+/// As [`table`] and [`memory`] say; `out` can be written, and is not part of the state.
 #[unsafe(no_mangle)]
 unsafe extern "C" fn staunch_reference_find(
     words: *const u32,

@@ -1,4 +1,4 @@
-//! What is known of a function block besides its code: pins, instructions, prescan, retention.
+//! The facts about a function block, in addition to its code: pins, instructions, prescan, retention.
 
 use crate::{Context, Elementary, Family, Repr, Scalar, Time, Value};
 
@@ -31,7 +31,7 @@ pub struct Pin {
     pub offset: usize,
 }
 
-/// What a pin is for, whatever a system calls it: what its counterparts elsewhere share.
+/// The role of a pin, whatever a system calls it: the same for its counterparts in other systems.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PinRole {
     /// Counts up; in a structure that instructions share, the rung that did.
@@ -51,7 +51,7 @@ pub enum PinRole {
 }
 
 impl PinRole {
-    /// What a pin of that name is for, in whichever block has one.
+    /// The role of a pin with this name, in whichever block has one.
     pub fn named(name: &str) -> Option<Self> {
         crate::BLOCKS.iter().flat_map(|it| it.pins).find_map(|it| it.role.filter(|_| it.is_named(name)))
     }
@@ -109,7 +109,7 @@ pub struct BlockInfo {
 pub struct Facts {
     /// Another name in Structured Text: the standard's for a timer of one type, `TON_TIME`.
     pub alias: Option<&'static str>,
-    /// The standard overloads it: what is of its pins' type may be of this one, carried alike.
+    /// The standard overloads it: pins of its type may have this one, which is stored in the same way.
     pub overload: Option<Elementary>,
     /// No name leads to it: it takes another's place under an option.
     pub option: Option<Replacement>,
@@ -125,7 +125,7 @@ pub struct Facts {
     pub loads_on_edges: bool,
     /// Pins that some controllers of the system, or its data of counters, call otherwise.
     pub other_pins: &'static [OtherPin],
-    /// A system that has not this block, and what it has in its place.
+    /// A system that does not have this block, and what to use there instead.
     pub instead: Option<(Family, &'static str)>,
 }
 
@@ -151,7 +151,7 @@ pub struct Replacement {
     pub of: &'static str,
 }
 
-/// What a vendor leaves open.
+/// Behaviour that a vendor does not specify.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum BlockOption {
     /// CODESYS: `CTU` stops at its preset, as some of its documents say.
@@ -180,7 +180,7 @@ pub struct KeptCount {
     pub plain: &'static str,
 }
 
-/// What a restart leaves of a block's instances.
+/// What a restart keeps of a block's instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Retention {
     /// Those that are RETAIN stay as they are, the others start anew.
@@ -337,7 +337,7 @@ macro_rules! pin_type {
 }
 pub(crate) use pin_type;
 
-/// What a pin is for.
+/// The role of a pin.
 macro_rules! pin_role {
     () => {
         None
@@ -359,7 +359,7 @@ macro_rules! pin_elementary {
 }
 pub(crate) use pin_elementary;
 
-/// `pins` with all that are of a type made another that is carried alike: a UINT that a vendor
+/// `pins` with one type replaced by another that is stored in the same way: a UINT that a vendor
 /// documents as WORD. `N` is their number.
 pub(crate) const fn retyped<const N: usize>(pins: &[Pin], types: &[(Elementary, Elementary)]) -> [Pin; N] {
     assert!(pins.len() == N);

@@ -60,7 +60,7 @@ macro_rules! for_each_block {
             // What notes a division by zero after which the program continues; no program names it.
             Iec "__MINOR_FAULT" iec::MinorFault {} { timed "" call staunch_iec_minor_fault; }
 
-            // What tells the start of a cycle of a task of TwinCAT's; no program names it.
+            // It notes the start of a cycle of a TwinCAT task; no program names it.
             Iec "__SCAN" iec::ScanInfo {} [TIME => LTIME] { timed "" call staunch_iec_scan; }
 
             // The compiler adds RCV to the inputs of R_CTU and R_CTD.

@@ -1,4 +1,4 @@
-//! The calendar: days since 1970-01-01 and what they are called, in the Gregorian calendar, also before
+//! The calendar: days since 1970-01-01 and their dates, in the Gregorian calendar, also before
 //! it was in use.
 
 use crate::Time;
@@ -53,7 +53,7 @@ impl Day {
         Some(year.div_euclid(400) * DAYS_OF_ERA + day - TO_1970)
     }
 
-    /// Its first nanosecond; `None` for a day that does not exist, or starts beyond what a [`Time`] reaches.
+    /// Its first nanosecond; `None` for a day that does not exist, or starts beyond the range of a [`Time`].
     pub const fn start(self) -> Option<Time> {
         match self.number() {
             Some(number) => number.checked_mul(DAY),
@@ -62,7 +62,7 @@ impl Day {
     }
 }
 
-/// 28 to 31; 31 for what is no month.
+/// 28 to 31; 31 for a number that is not a month.
 pub const fn days_of_month(year: i64, month: i64) -> i64 {
     match month {
         4 | 6 | 9 | 11 => 30,

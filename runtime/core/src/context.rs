@@ -1,10 +1,10 @@
-//! What a scan hands to all that runs in it: its time, whether it is the first, the time between two, and the turns that
+//! What a scan passes to all code that runs in it: its time, whether it is the first, the time between two, and the turns that
 //! loops have left.
 
 use crate::{FaultKind, Location, Time};
 use core::cell::Cell;
 
-/// What a scan is told about the world: the runtime has no clock of its own.
+/// What a scan knows about the world: the runtime has no clock of its own.
 ///
 /// Native code reads this struct by offset, so its layout is part of the ABI.
 #[repr(C)]
@@ -105,7 +105,7 @@ impl Context {
         self.minor_faults.set(self.minor_faults.get().and(MinorFaults { count: 1, first: Some(at) }));
     }
 
-    /// What was reported in this scan.
+    /// The minor faults of this scan.
     pub fn minor_faults(&self) -> MinorFaults {
         self.minor_faults.get()
     }

@@ -1,4 +1,4 @@
-//! The checksum of retained variables, of a host's file and of a firmware's memory alike.
+//! The checksum of retained variables, both in a host's file and in a firmware's memory.
 
 /// CRC-32 (IEEE 802.3, as in Ethernet and ZIP) of bytes that come piece by piece.
 #[derive(Clone, Copy, Debug)]

@@ -115,7 +115,7 @@ classes! {
     /// Every type, a user's own too.
     Any         "ANY";
     Elementary  "ANY_ELEMENTARY"  Any;
-    /// What has a size: numbers and durations.
+    /// Types with a magnitude: numbers and durations.
     Magnitude   "ANY_MAGNITUDE"   Elementary;
     Num         "ANY_NUM"         Magnitude;
     Real        "ANY_REAL"        Num;
@@ -198,7 +198,7 @@ impl Elementary {
         self.is(Class::Duration)
     }
 
-    /// A duration, a date or a time of day: what a [`Time`](crate::Time) carries.
+    /// A duration, a date or a time of day: the types that a [`Time`](crate::Time) carries.
     pub const fn is_time(self) -> bool {
         self.is_duration() || self.is(Class::Date)
     }

@@ -5,7 +5,7 @@ use crate::Fault;
 /// How such statements ended, where they did not fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ended {
-    /// Control goes on after them.
+    /// Control continues after them.
     Here,
     /// By an EXIT of a loop around them.
     Exit,

@@ -1,4 +1,4 @@
-//! The systems whose documents define blocks, and what is said of each as a whole.
+//! The systems whose documents define blocks, and the facts about each as a whole.
 
 use crate::Elementary;
 
@@ -47,7 +47,7 @@ impl Family {
         }
     }
 
-    /// What is left when the power fails and comes back.
+    /// What a power cycle keeps.
     pub const fn over_power_cycle(self) -> Keeps {
         match self {
             Self::Iec | Self::Cscape | Self::Codesys | Self::Openplc | Self::Openplc4 | Self::S7 => Keeps::Declared,
@@ -55,7 +55,7 @@ impl Family {
         }
     }
 
-    /// What is left when the controller goes from IDLE, or STOP, to RUN.
+    /// What a change from IDLE, or STOP, to RUN keeps.
     pub const fn over_run(self) -> Keeps {
         match self {
             Self::Iec | Self::Cscape | Self::Openplc | Self::Openplc4 | Self::S7 => Keeps::Declared,
@@ -63,7 +63,7 @@ impl Family {
         }
     }
 
-    /// What the system has in place of a type, where it has not that.
+    /// What to use in place of a type that the system does not have.
     pub const fn instead_of(self, ty: Elementary) -> Option<&'static str> {
         match (self, ty) {
             (Self::Logix, Elementary::Byte) => Some("SINT"),

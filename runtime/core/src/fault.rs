@@ -17,7 +17,7 @@ pub enum FaultKind {
     ZeroStep = 4,
     /// The loops of a scan took more turns than it has: one of them may have no end.
     LoopBudget = 5,
-    /// Numbers of a year, a month, a day or a time of day that make none, or one beyond what is reached.
+    /// Numbers of a year, a month, a day or a time of day that are not valid, or out of range.
     NoSuchDate = 6,
     /// A null reference was followed.
     NullReference = 7,
@@ -25,11 +25,11 @@ pub enum FaultKind {
     OutsideObject = 8,
     /// A WSTRING was read or written from the middle of a code unit on.
     MisalignedReference = 9,
-    /// What a reference points to may not be viewed as what was asked for.
+    /// The target of a reference may not be viewed as the requested type.
     ForbiddenView = 10,
     /// The condition of an ASSERT does not hold.
     AssertionFailed = 11,
-    /// What is called has no implementation here: it is outside of Structured Text, or a library only declares it.
+    /// The called routine has no implementation here: it is outside Structured Text, or a library only declares it.
     NotImplemented = 12,
     /// The preset or the accumulated value of a Logix TIMER is below 0 where it times.
     NegativeTimer = 13,
@@ -41,7 +41,7 @@ pub enum FaultKind {
     Raised = 16,
     /// References led METHODs back to an instance whose METHOD had not ended.
     Recursion = 17,
-    /// Four bits are no decimal digit, or a number has more digits than a BCD number of S7 holds.
+    /// Four bits are not a decimal digit, or a number has more digits than a BCD number of S7 holds.
     NotDecimal = 18,
 }
 
@@ -96,8 +96,8 @@ impl FaultKind {
         }
     }
 
-    /// Whether a program may handle it and go on (CODESYS' `__TRY`). It may not go on where a loop or a recursion has no end, as that
-    /// would defeat the budget; nor where a test has failed, or what it would call is not there.
+    /// Whether a program may handle it and continue (CODESYS' `__TRY`). It may not continue after an endless loop or recursion, as that
+    /// would defeat the budget; nor after a failed test or a call of a routine that does not exist.
     pub const fn can_be_caught(self) -> bool {
         match self {
             Self::LoopBudget | Self::AssertionFailed | Self::NotImplemented | Self::Recursion => false,
@@ -244,7 +244,7 @@ impl<T> OrFault<T> for Result<T, Fault> {
     }
 }
 
-/// What an operation returns: a value, or a value unless it faults.
+/// The result of an operation: a value, or a value unless it faults.
 pub trait Outcome {
     type Value;
     fn outcome(self) -> Result<Self::Value, FaultKind>;

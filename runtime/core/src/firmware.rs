@@ -1,4 +1,4 @@
-//! What a firmware asks of the program that is compiled into it: what runs when, and which variable lies at
+//! What a firmware asks of the program that is compiled into it: what runs when, which variable is at
 //! which direct address, and what it retains. Generated Rust holds the tables.
 
 mod named;
@@ -37,7 +37,7 @@ pub struct Io {
     pub width: u8,
 }
 
-/// What a direct address is an address of.
+/// The area of a direct address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Area {
     /// `%I`: the firmware sets it before a scan.

@@ -1,4 +1,4 @@
-//! Texts as JSON writes them: for what the compiler, the host and a firmware print.
+//! Texts as JSON writes them, for the output of the compiler, the host and a firmware.
 
 use core::fmt::{self, Write};
 

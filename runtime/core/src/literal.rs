@@ -7,7 +7,7 @@ use crate::calendar::{Clock, Day, days_of_month};
 use crate::time::{DAY, SECOND};
 use crate::{Elementary, Time};
 
-/// What is wrong with a literal, and the bytes of its text where.
+/// What is wrong with a literal, and in which bytes of its text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LiteralError {
     pub start: usize,
@@ -20,7 +20,7 @@ pub enum LiteralErrorKind {
     /// The base of a number is none of 2, 8 and 16.
     Base,
     NoDigits,
-    /// A character that is no digit of the number's base.
+    /// A character that is not a digit of the number's base.
     Digit {
         base: u32,
     },
@@ -88,7 +88,7 @@ impl LiteralErrorKind {
             Self::Hour => "a day has the hours 0 to 23",
             Self::Minute => "an hour has the minutes 0 to 59",
             Self::Second => "a minute has the seconds 0 to 59",
-            Self::DateTooFar => "dates reach from 1677-09-22 to 2262-04-11",
+            Self::DateTooFar => "dates go from 1677-09-22 to 2262-04-11",
         }
     }
 }

@@ -99,11 +99,11 @@ macro_rules! for_each_op {
             Min         "MIN"      min        (IN1: T, IN2: T) -> T                  [ANY_ELEMENTARY as any]      total extensible;
             Limit       "LIMIT"    limit      (MN: T, IN: T, MX: T) -> T             [ANY_ELEMENTARY as any]      total;
             Sel         "SEL"      sel        (G: BOOL, IN0: T, IN1: T) -> T         [ANY as any]                 total;
-            // A subrange check: IN if it lies in MN..MX, else a fault.
+            // A subrange check: IN if it is in MN..MX, else a fault.
             InRange     "_RANGE"   in_range   (MN: T, IN: T, MX: T) -> T             [ANY_INT as integer]         faults;
             // What a reference is after a step of N bytes: only the lower half changes.
             Advance     "_ADVANCE" advance    (IN: T, N: ANY_INT) -> T               [ANY_BIT as integer]         total;
-            // An index that is looked at before its element: IN if it lies in MN..MX, else a fault.
+            // An index that is checked before its element: IN if it is in MN..MX, else a fault.
             CheckIndex  "_INDEX"   checked_index (MN: T, IN: T, MX: T) -> T          [ANY_INT as integer]         faults;
             // Points in time and what they are made of, in nanoseconds.
             WholeUnits  "_UNITS"   whole_units (IN: T, UNIT: T) -> T                 [ANY_DATE as long]           total;

@@ -3,13 +3,13 @@
 //! A program has no heap and no recursion, so its world is closed: the objects that references may name are
 //! known, each with its place in the program's state. A [`Reference`] is the number of an object and an
 //! address, in bytes; arithmetic moves the address and never changes the object. A [`Table`] says
-//! where the objects are and which types lie in them, and decides every access: all executors ask it, so
-//! that all fault alike.
+//! where the objects are and which types they contain, and decides every access: all executors ask it, so
+//! that all fault in the same way.
 //!
 //! Numbers may be viewed as bytes and as one another, in the machine's byte order; a BOOL as a byte that is
 //! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0. Numbers side by
 //! side in a structure may be viewed as one; a byte between members is 0, and takes no write. Enumerations are
-//! viewed as what they are, and as bytes; subranges, references and standard blocks as what they are.
+//! viewed at their own type, and as bytes; subranges, references and standard blocks only at their own type.
 //!
 //! An object in a pool has a mark, which says whether it is in use: what leads to one that was deleted is a fault.
 
@@ -27,7 +27,7 @@ pub use crate::Repr;
 use crate::text::Unit;
 use crate::{FaultKind, Scalar, StringType, Text, Value, WideText};
 
-/// What a variable of a reference type holds: the object's number, from 1, in the low bits of the upper half, and
+/// The value of a variable of a reference type: the object's number, from 1, in the low bits of the upper half, and
 /// the address in the lower. 0 is null. The bits above the object's number are [`CLASS`]: they say which class
 /// an instance is of, for calls that depend on it, and have no part in an access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,7 +36,7 @@ pub struct Reference {
     pub address: u32,
 }
 
-/// The address of the state's first byte. It keeps addresses apart from null, and aligned as the state is.
+/// The address of the state's first byte. It makes addresses differ from null, and aligned as the state is.
 pub const ORIGIN: u32 = 0x1000;
 
 /// Where the number of an instance's class begins in a reference. Below it there is room for 2^20 objects.
@@ -53,8 +53,8 @@ impl Reference {
 }
 
 impl<'t> Table<'t> {
-    /// The reference to what lies at `offset` in the state and has `size` bytes: into the smallest object
-    /// that holds it. Null if none does, which a compiled program excludes.
+    /// The reference to the `size` bytes at `offset` in the state: into the smallest object
+    /// that holds them. Null if none does, which a compiled program excludes.
     pub fn address(&self, offset: usize, size: usize) -> u64 {
         let address = ORIGIN + offset as u32;
         self.holding(offset, size).map_or(0, |object| Reference { object, address }.bits())
@@ -247,7 +247,7 @@ impl<'t> Table<'t> {
         find(machine, offset).ok_or(FaultKind::ForbiddenView)
     }
 
-    /// What the reference points to as a STRING of its own.
+    /// A copy of the target as a STRING.
     pub fn string<const N: usize>(
         &self,
         memory: &(impl Memory + ?Sized),
@@ -320,7 +320,7 @@ fn set_character<U: Unit>(
     Ok(())
 }
 
-/// Ends a string; what was after that becomes zero, as it is in every string.
+/// Ends a string; the bytes after that become zero, as in every string.
 fn clear_from<U: Unit>(memory: &(impl Memory + ?Sized), text: usize, index: usize) {
     let length = usize::from(length(memory, text));
     for at in index..length {

@@ -120,7 +120,7 @@ macro_rules! zero {
     };
 }
 
-// BOOL's bytes are read and written apart: any other bit pattern is not a `bool`.
+// BOOL's bytes are read and written separately: any other bit pattern is not a `bool`.
 macro_rules! repr_arm {
     (@pat Bool) => {
         Repr::Bool

@@ -1,4 +1,4 @@
-//! What a standard function takes and gives, as the standard's tables write it.
+//! The signature of a standard function, as in the standard's tables.
 
 use crate::{Class, Elementary, Repr};
 
@@ -25,7 +25,7 @@ pub struct Parameter {
 /// The type of a parameter or a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// The one type of all that are `T` in a call.
+    /// The common type of all parameters of type `T` in a call.
     T,
     /// Any type of the class, whatever the other operands are.
     Any(Class),
@@ -34,12 +34,12 @@ pub enum Kind {
     String,
     /// A WSTRING of any length.
     Wstring,
-    /// A STRING or a WSTRING of any length: the same of all that are this in a call.
+    /// A STRING or a WSTRING of any length: the same for all such parameters in a call.
     AnyString,
 }
 
 impl Kind {
-    /// The repr of what is not `T` and not a string. Where any integer is taken, a LINT comes in.
+    /// The repr of a parameter that is neither `T` nor a string. Where any integer is accepted, a LINT is passed.
     pub const fn repr(self) -> Option<Repr> {
         match self {
             Self::Is(ty) => Some(ty.repr()),

@@ -70,7 +70,7 @@ impl<const N: usize, U: Unit> Text<N, U> {
         self.destination().write(units);
     }
 
-    /// A byte of the string as it lies in memory: its length, then its characters.
+    /// A byte of the string as it is in memory: its length, then its characters.
     pub(crate) fn raw_byte(&self, at: usize) -> u8 {
         let [low, high] = self.len.to_ne_bytes();
         match at {
@@ -145,10 +145,10 @@ impl<const N: usize, U: Unit> fmt::Display for Text<N, U> {
     }
 }
 
-/// Where a string function writes: the length and the units of a string of any capacity. Each writes after what is there,
+/// Where a string function writes: the length and the units of a string of any capacity. Each writes after the existing text,
 /// so that several make one string.
 ///
-/// The units past a string's length are zero. So those that it had before and has no more become zero when the
+/// The units past a string's length are zero. So those that it no longer has become zero when the
 /// writing ends; the others are not touched.
 #[derive(Debug)]
 pub struct Destination<'a, U: Unit = u8> {

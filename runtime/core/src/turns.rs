@@ -31,7 +31,7 @@ impl Context {
         }
     }
 
-    /// [`Context::take_turns`] of a loop that goes on while its counter is before `bound`: below it, or above it where the step
+    /// [`Context::take_turns`] of a loop that continues while its counter is before `bound`: below it, or above it where the step
     /// is negative.
     #[inline]
     pub fn take_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<(), FaultKind> {
@@ -68,7 +68,7 @@ impl Context {
         is_below(first, last, step, few(step))
     }
 
-    /// [`Context::has_few_turns`] of a loop that goes on while its counter is before `bound`.
+    /// [`Context::has_few_turns`] of a loop that continues while its counter is before `bound`.
     #[inline]
     pub fn has_few_turns_before<T: Integer>(first: T, bound: T, step: i128) -> bool {
         is_below(first, bound, step, few(step).saturating_add(1))

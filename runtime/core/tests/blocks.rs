@@ -1,4 +1,4 @@
-//! The blocks beside the counters, call by call, and that `call` is inputs and a step.
+//! The blocks other than the counters, call by call, and that `call` is inputs and a step.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use staunch_runtime::time::ms;

@@ -6,7 +6,7 @@
 use serde_json::{Map, Value as Json};
 use staunch_runtime::{BLOCKS, BlockInfo, BlockOption, Context, Family, PinRole, Value};
 
-/// What a family says, as far as one counter cannot tell by its pins.
+/// The rules of a family, as far as the pins of one counter do not show them.
 #[derive(Clone, Copy, Debug)]
 struct Rules {
     counts_levels: bool,

@@ -1,7 +1,7 @@
 //! The counters of the four systems, scan by scan: every table of `tests/vectors/counters.json`.
 //!
 //! A table runs on its row of `BLOCKS`, through the instance's bytes, so it tests the pins'
-//! names, types and places together with the Rust struct behind them.
+//! names, types and places together with the Rust struct that has them.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::collections::HashSet;

@@ -9,7 +9,7 @@ use staunch_runtime::Time;
 use staunch_runtime::literal::duration;
 use std::ffi::OsString;
 
-/// What the user of an executable wants.
+/// The options of an executable.
 #[derive(Clone, Debug)]
 pub enum Wish {
     Run(Options),
@@ -19,19 +19,19 @@ pub enum Wish {
 }
 
 const FLAGS: [(&str, &str, &str); 24] = [
-    ("--program", "NAME", "Run this program only"),
+    ("--program", "NAME", "Run only this program"),
     ("--scans", "N", "End after N scans"),
-    ("--cycle", "TIME", "Time between two scans, as 10ms"),
-    ("--loop-budget", "N", "Turns that the loops of one scan may take together"),
+    ("--cycle", "TIME", "Time from scan to scan, as 10ms"),
+    ("--loop-budget", "N", "Limit for the turns of all loops in one scan together"),
     ("--stimulus", "FILE", "Inputs, from a CSV file"),
-    ("--trace", "FILE", "Write a row a scan, as .csv, .vcd, .svg or .html; - for standard output"),
-    ("--from", "MOMENT", "Show the scans from this one or this time on, as 120 or 1s200ms"),
-    ("--to", "MOMENT", "Show the scans to this one or this time"),
+    ("--trace", "FILE", "Write a row for each scan, as .csv, .vcd, .svg or .html; - for standard output"),
+    ("--from", "MOMENT", "Show scans from this one, or from this time, as 120 or 1s200ms"),
+    ("--to", "MOMENT", "Show scans up to this one, or to this time"),
     ("--vars", "NAMES", "Variables to show, separated by commas"),
     ("--overlay", "NAMES", "Numbers that a .svg shows in one lane, as a,b; may be repeated"),
     ("--retain", "FILE", "Keep retained variables in a file"),
-    ("--retain-within", "TIME|scan", "In real time, how soon a change is on disk; without, 1s"),
-    ("--realtime", "", "Wait for the time at which each scan is due"),
+    ("--retain-within", "TIME|scan", "In real time, the time until a change is on disk; default 1s"),
+    ("--realtime", "", "Wait, so that each scan runs at its time"),
     ("--priority", "N", "In real time, run before others: SCHED_FIFO, 1 to 98, with all memory locked"),
     ("--cpu", "N", "In real time, run on this processor"),
     ("--overrun", "skip|catch-up|fault", "In real time, what follows a scan that is too long; skip without"),
@@ -151,7 +151,7 @@ fn is_json(text: &str) -> Result<bool, String> {
     match text {
         "human" => Ok(false),
         "json" => Ok(true),
-        _ => Err(format!("`{text}` is no format: there are human and json")),
+        _ => Err(format!("`{text}` is not a format: expected human or json")),
     }
 }
 
@@ -160,7 +160,7 @@ fn help(name: &str) -> String {
     let mut text = format!(
         "Runs a compiled IEC 61131-3 program.\n\n\
          With --scans, --stimulus, --trace or --table it runs on a virtual clock that does not\n\
-         wait; without, in real time until it is interrupted.\n\nUsage: {name} [OPTIONS]\n\nOptions:\n"
+         wait; without them, in real time until it is interrupted.\n\nUsage: {name} [OPTIONS]\n\nOptions:\n"
     );
     for (flag, value, meaning) in FLAGS {
         text += &format!("  {:<27} {meaning}\n", format!("{flag} {value}"));

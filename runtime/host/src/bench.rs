@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// A batch is long enough that reading the clock does not count.
 const BATCH: Duration = Duration::from_micros(50);
 const LARGEST_BATCH: u64 = 1 << 16;
-/// Measuring goes on for this long unless the number of scans is given.
+/// Measuring takes this long unless the number of scans is given.
 const LENGTH: Duration = Duration::from_millis(700);
 const WARM_UP: Duration = Duration::from_millis(100);
 /// Batches of empty scans that are measured.
@@ -204,7 +204,7 @@ impl<'a> Bench<'a> {
         Ok(self.batch(count)?.as_nanos() as f64 / count as f64)
     }
 
-    /// Finds how many scans make a batch, and goes on until caches and clock rate have settled.
+    /// Finds how many scans make a batch, and continues until caches and clock rate have settled.
     fn warm_up(&mut self) -> Result<u64, Error> {
         let began = Instant::now();
         let mut count = 1;

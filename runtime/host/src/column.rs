@@ -38,7 +38,7 @@ pub(crate) fn columns(map: &Map, running: &[usize], vars: Option<&str>) -> Resul
     Ok(columns)
 }
 
-/// Most numbers that one lane shows: more cannot be told from each other.
+/// The most numbers that one lane shows: more cannot be distinguished.
 const MOST_OVERLAID: usize = 3;
 
 /// Which columns are drawn in one lane. The error is a sentence without a full stop.
@@ -66,7 +66,7 @@ pub(crate) fn overlays(columns: &[Column], wanted: &[String]) -> Result<Vec<Vec<
         .collect()
 }
 
-/// The list of what TwinCAT tells of tasks, which is shown where it is asked for.
+/// TwinCAT's information about tasks, which is shown only on request.
 const TOLD: &str = "TwinCAT_SystemInfoVarList.";
 
 /// Globals that a program names itself, as VAR_EXTERNAL or by the same address, are among its variables,

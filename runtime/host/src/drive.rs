@@ -42,7 +42,7 @@ impl Drive {
         self.schedule.shortest_period()
     }
 
-    /// What the event does not keep starts anew. Inputs are to be written again.
+    /// Variables that the event does not keep start again. Inputs must be written again.
     pub fn start_again(&mut self, event: Event, machine: &mut dyn Machine) {
         self.start.again(event, machine);
         self.fresh.fill(true);

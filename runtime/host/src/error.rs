@@ -62,7 +62,7 @@ impl Error {
         }
     }
 
-    /// What a process that ends with this error returns.
+    /// The exit code of a process that ends with this error.
     pub const fn exit_code(&self) -> u8 {
         match self {
             Self::ClosedPipe => 0,
@@ -102,7 +102,7 @@ fn rounded(time: Time) -> String {
 
 impl std::error::Error for Error {}
 
-/// Writes a line to standard error. Where that is closed, nobody is there to be told, and the program runs on.
+/// Writes a line to standard error. If that is closed, nobody reads it, and the program continues.
 pub(crate) fn tell(line: impl fmt::Display) {
     use io::Write as _;
     let _ = writeln!(io::stderr().lock(), "{line}");

@@ -1,4 +1,4 @@
-//! What an executable made of compiled code does.
+//! The behaviour of a built executable.
 
 use crate::Error;
 use crate::args::{Wish, parse_options};
@@ -10,7 +10,7 @@ use crate::signal;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// What a built executable does: runs its program as its arguments say.
+/// The main function of a built executable: runs its program as its arguments say.
 pub fn main(code: Code) -> ExitCode {
     ExitCode::from(main_with(code, std::env::args_os()))
 }

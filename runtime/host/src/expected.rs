@@ -84,12 +84,12 @@ impl Expectations {
         for cell in named {
             let place = resolve(map, running, &cell.text).map_err(|text| at(cell, text))?;
             if matches!(place.ty, Type::Array(_) | Type::Struct(_) | Type::Block(_)) {
-                return Err(at(cell, format!("`{}` is not one value: name a member or an element", cell.text)));
+                return Err(at(cell, format!("`{}` is not a single value: name a member or an element", cell.text)));
             }
             variables.push((cell.text.clone(), place));
         }
         if variables.is_empty() {
-            return Err(error(1, 1, "it names no variable right of the `|`".to_owned()));
+            return Err(error(1, 1, "it names no variable to the right of the `|`".to_owned()));
         }
         let column = |name| inputs.iter().take(2).position(|it| same(&it.text, name));
         let (scans, times) = (column("scan"), column("time"));
@@ -118,7 +118,7 @@ impl Expectations {
             }
         }
         match expectations.rows.is_empty() {
-            true => Err(error(1, 1, "no row expects anything right of the `|`".to_owned())),
+            true => Err(error(1, 1, "no row expects anything to the right of the `|`".to_owned())),
             false => Ok(expectations),
         }
     }
@@ -131,7 +131,7 @@ fn wants(map: &Map, place: Place, text: &str, decimal_comma: bool) -> Result<Wan
     if let Some((value, tolerance)) = text.split_once("+-").filter(|_| is_real) {
         let both = value.trim().parse().ok().zip(tolerance.trim().parse().ok());
         let both = both.map(|(value, tolerance)| Wants::Near(value, tolerance));
-        return both.ok_or_else(|| format!("`{text}` is no value and tolerance: write `1.5 +- 0.1`"));
+        return both.ok_or_else(|| format!("`{text}` is not a value with a tolerance: write `1.5 +- 0.1`"));
     }
     let bytes = literal::parse(map, place, text)?;
     // A bit of a word is written alone.
@@ -168,12 +168,12 @@ mod tests {
     fn mistakes_name_their_place() {
         for (text, expected) in [
             ("up,|,nothing\n1,|,1\n", "t.csv:1:6: there is no variable `nothing`"),
-            ("up,|,c\n1,|,1\n", "t.csv:1:6: `c` is not one value: name a member or an element"),
+            ("up,|,c\n1,|,1\n", "t.csv:1:6: `c` is not a single value: name a member or an element"),
             ("up,|,c.CV\n1,|,x\n", "t.csv:2:5: `x` is not an INT"),
             ("up,|,c.CV\n1,|,1,2\n", "t.csv:2:7: the header has only 3 columns"),
-            ("up,|,c.CV\n1,|\n", "t.csv:1:1: no row expects anything right of the `|`"),
-            ("up,|\n1,|\n", "t.csv:1:1: it names no variable right of the `|`"),
-            ("up,|,speed\n1,|,1 +- x\n", "t.csv:2:5: `1 +- x` is no value and tolerance: write `1.5 +- 0.1`"),
+            ("up,|,c.CV\n1,|\n", "t.csv:1:1: no row expects anything to the right of the `|`"),
+            ("up,|\n1,|\n", "t.csv:1:1: it names no variable to the right of the `|`"),
+            ("up,|,speed\n1,|,1 +- x\n", "t.csv:2:5: `1 +- x` is not a value with a tolerance: write `1.5 +- 0.1`"),
         ] {
             assert_eq!(read(text).unwrap_err(), expected, "{text}");
         }

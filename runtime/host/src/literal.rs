@@ -25,7 +25,7 @@ pub fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
             found.unwrap_or_else(|| Err("the type is not in the map".to_owned()))?
         }
         Type::Reference if text.eq_ignore_ascii_case("null") => Value::U64(0),
-        Type::Reference => return Err("it is a reference: it can be set to null".to_owned()),
+        Type::Reference => return Err("it is a reference: it can only be set to null".to_owned()),
         Type::Array(_) | Type::Struct(_) | Type::Block(_) => {
             return Err(format!("it is a whole {}: name a member or an element", map.type_name(place.ty)));
         }
@@ -40,7 +40,7 @@ pub fn parse(map: &Map, place: Place, text: &str) -> Result<Vec<u8>, String> {
     Ok(bytes)
 }
 
-/// A text as it lies in a UNION, with zeros up to the end.
+/// A string as it is stored in a UNION, with zeros up to the end.
 fn without_length(mut text: Vec<u8>, size: usize) -> Vec<u8> {
     text.drain(..2);
     text.resize(size, 0);
@@ -52,7 +52,7 @@ fn string(text: &str, ty: StringType) -> Result<Vec<u8>, String> {
         if ty.wide { text.encode_utf16().flat_map(u16::to_ne_bytes).collect() } else { text.as_bytes().to_vec() };
     let length = units.len() / ty.unit_size() as usize;
     let Some(header) = u16::try_from(length).ok().filter(|it| *it <= ty.capacity) else {
-        return Err(format!("the text has {length} {}, a {ty} holds {}", ty.units(), ty.capacity));
+        return Err(format!("the text has {length} {}, but a {ty} holds {}", ty.units(), ty.capacity));
     };
     let mut bytes = header.to_ne_bytes().to_vec();
     bytes.extend(units);
@@ -114,7 +114,7 @@ fn time_of(map: &Map, text: &str) -> Result<i64, String> {
         return Ok(time);
     }
     let [least, greatest] = [least, greatest].map(|it| format_time(it * MILLISECOND));
-    Err(format!("a TIME of this dialect has whole milliseconds, from {least} to {greatest}: `{text}` is none"))
+    Err(format!("`{text}` is not a TIME of this dialect: expected whole milliseconds from {least} to {greatest}"))
 }
 
 fn long_time(text: &str) -> Result<i64, String> {
@@ -257,8 +257,8 @@ mod tests {
         assert_eq!(parse(&codesys, place, "T#5s").unwrap(), 5_000_000_000_i64.to_ne_bytes());
         for text in ["T#-1ms", "T#500us", "T#5001ms"] {
             let error = parse(&codesys, place, text).unwrap_err();
-            let range = "a TIME of this dialect has whole milliseconds, from T#0s to T#5s";
-            assert_eq!(error, format!("{range}: `{text}` is none"));
+            let range = "expected whole milliseconds from T#0s to T#5s";
+            assert_eq!(error, format!("`{text}` is not a TIME of this dialect: {range}"));
             assert!(read("pause", text).is_ok());
         }
     }
@@ -285,7 +285,7 @@ mod tests {
         );
         assert_eq!(error("pause", "5"), "`5` is not a TIME: write `T#500ms` or `500ms`");
         assert_eq!(error("colour", "Gren"), "Color has no value `Gren`; did you mean `Green`?");
-        assert_eq!(error("name", "abcde"), "the text has 5 bytes, a STRING[4] holds 4");
+        assert_eq!(error("name", "abcde"), "the text has 5 bytes, but a STRING[4] holds 4");
         assert_eq!(error("c", "1"), "it is a whole CTU: name a member or an element");
     }
 }

@@ -115,7 +115,7 @@ pub struct Variable {
     pub whole: bool,
     /// Kept so over IDLE -> RUN.
     pub stays: bool,
-    /// Starts anew, although what it is a part of is retained.
+    /// Starts again, although the variable around it is retained.
     pub restarts: bool,
     pub constant: bool,
     /// Of a global: some instance uses it.
@@ -244,7 +244,7 @@ impl Map {
         Ok(())
     }
 
-    /// Every type that is named is there, so that later look-ups need no errors.
+    /// Every type that is named exists, so that later look-ups need no errors.
     fn checked(self) -> Result<Self, Error> {
         let structures = self.structs.values().chain(self.blocks.values());
         let members = structures.flat_map(|it| &it.members).map(|it| it.ty);
@@ -370,7 +370,7 @@ impl Variable {
         }
     }
 
-    /// TRUE for what the world outside writes: it holds its value over a restart.
+    /// TRUE for a variable that is written from outside: it holds its value through a restart.
     pub fn is_input(&self) -> bool {
         self.section == Section::Input || self.address.as_deref().is_some_and(|it| it.starts_with("%I"))
     }

@@ -54,7 +54,7 @@ impl Messages {
         self.told = count;
         let mut messages = Vec::new();
         if let Some(lost @ 1..) = fresh.checked_sub(KEPT) {
-            messages.push(Message { kind: "note", text: format!("{lost} messages before these are not kept") });
+            messages.push(Message { kind: "note", text: format!("{lost} earlier messages were not kept") });
         }
         for number in count - fresh.min(KEPT)..count {
             let place = number % KEPT;

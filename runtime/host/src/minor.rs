@@ -4,7 +4,7 @@ use crate::json::quote;
 use crate::map::Map;
 use staunch_runtime::MinorFaults;
 
-/// What is told of them, where there were any.
+/// The note about them, if there were any.
 pub fn minor_faults_note(faults: MinorFaults, map: &Map) -> Option<String> {
     let at = faults.first?;
     let divisions = if faults.count == 1 { "1 division".to_owned() } else { format!("{} divisions", faults.count) };

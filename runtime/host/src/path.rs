@@ -37,7 +37,7 @@ impl Place {
     }
 }
 
-/// What a type is where its bytes are those of other variables too.
+/// The type of a variable whose bytes belong to other variables as well.
 fn shared(ty: Type) -> Type {
     match ty {
         Type::String(it) => Type::Characters(it),
@@ -137,7 +137,7 @@ fn steps(text: &str) -> Option<Vec<Step<'_>>> {
     }
 }
 
-/// The variable that lies at an offset of the state and has this size, by its name.
+/// The name of the variable at an offset of the state that has this size.
 pub(crate) fn path_at(map: &Map, offset: usize, size: usize) -> Option<String> {
     let (globals, base) = map.globals();
     let found = member_at(map, globals, base, offset, size);
@@ -310,7 +310,7 @@ fn element(map: &Map, place: Place, index: i64) -> Result<Place, String> {
     Ok(Place { range: place.range, ..part })
 }
 
-/// `%IW10`, and `%IW10.n` or `%IW10[3]` in what lies there. Of several variables there, it is one that has a value.
+/// `%IW10`, and `%IW10.n` or `%IW10[3]` in the variable there. Of several variables there, it is one that has a value.
 fn by_address(map: &Map, running: &[usize], text: &str) -> Result<Place, String> {
     let (address, rest) = split_address(text);
     let path = format!("_{rest}");
@@ -337,7 +337,7 @@ fn split_address(text: &str) -> (&str, &str) {
     (text[..end].trim_end(), &text[end..])
 }
 
-/// The variables that lie at an address: a program's own come first.
+/// The variables at an address: a program's own come first.
 fn at_address(map: &Map, running: &[usize], address: &str) -> Vec<Place> {
     let wanted = canonical(address);
     let has = |it: &&Variable| it.address.as_deref().is_some_and(|it| canonical(it) == wanted);

@@ -1,6 +1,6 @@
 //! Files that are written. A file appears under its name as a whole: it is made next to it and renamed, so that
-//! a crash or a full disk leaves what was there before. What is not a file, a pipe or a device, is written
-//! straight.
+//! a crash or a full disk leaves what was there before. A pipe or a device is written
+//! directly.
 
 use std::ffi::OsString;
 use std::fs::{self, File, Metadata};
@@ -65,7 +65,7 @@ impl Drop for Replacement {
     }
 }
 
-/// Names of what a process has open lead to it, and not to a file of that name.
+/// Names of a process's open files lead to these, and not to a file with that name.
 #[cfg(not(windows))]
 fn is_straight(path: &Path) -> bool {
     path.starts_with("/dev") || path.starts_with("/proc")
@@ -114,7 +114,7 @@ fn open_pipe(path: &Path) -> io::Result<File> {
 
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 fn open_pipe(_: &Path) -> io::Result<File> {
-    Err(io::Error::other("it is a pipe, which may let the program wait"))
+    Err(io::Error::other("it is a pipe, which may make the program wait"))
 }
 
 /// Opens a file to read it. A pipe that nobody writes lets its reader wait: that is said before.
@@ -175,7 +175,7 @@ pub fn followed(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("its symbolic links lead in a circle"))
 }
 
-/// What tells one file from all others, by whatever name it is reached. A file that does not exist yet is its
+/// What identifies a file, by whatever name it is reached. A file that does not exist yet is its
 /// folder and its name. `None` for devices and pipes that the process has open, which several may read and write.
 #[cfg(unix)]
 fn identity(path: &Path) -> Option<(u64, u64, OsString)> {
@@ -206,7 +206,7 @@ fn identity(path: &Path) -> Option<PathBuf> {
     path.canonicalize().or_else(|_| folder.canonicalize().map(|it| it.join(path.file_name().unwrap_or_default()))).ok()
 }
 
-/// A file that a call names, and what it is there: `the source`, `--trace`.
+/// A file that a call names, and its role in it: `the source`, `--trace`.
 pub type Role<'a> = (&'a str, &'a Path);
 
 /// Makes sure that no output takes the place of an input or of another output.
@@ -222,7 +222,11 @@ pub fn keep_apart(inputs: &[Role<'_>], outputs: &[Role<'_>]) -> Result<(), Strin
             ));
         }
         if let Some((other, name)) = outputs[..number].iter().find(same) {
-            return Err(format!("{what} {} and {other} {} are one file; write to two", path.display(), name.display()));
+            return Err(format!(
+                "{what} {} and {other} {} are the same file; write to two files",
+                path.display(),
+                name.display()
+            ));
         }
     }
     Ok(())

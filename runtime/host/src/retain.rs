@@ -67,10 +67,10 @@ enum Saving {
     Ended,
 }
 
-/// What a file held beside the values.
+/// What a file held in addition to the values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Loaded {
-    /// Where the clock goes on, which retained timers measure by.
+    /// Where the clock continues, by which retained timers measure.
     pub clock: Time,
     /// For each variable of the file that the program no longer retains, and for a damaged half of the file.
     pub notes: Vec<String>,
@@ -127,7 +127,7 @@ impl Retention {
         }
     }
 
-    /// Saves the values of a run that goes on.
+    /// Saves the values of a run that continues.
     pub fn save(&mut self, clock: Time, state: &[u8]) -> Result<(), Error> {
         self.offer(clock, state);
         match &mut self.saving {
@@ -207,13 +207,13 @@ impl Retained {
         let mut loaded = Loaded { clock: content.clock, notes: Vec::new() };
         if let Some(fault) = content.found.as_ref().map(|it| &it.fault).filter(|it| !it.is_empty()) {
             loaded.notes.push(format!(
-                "a run ended by a fault, and none has ended without one since: {fault}; its values are those of \
+                "a run ended with a fault, and no run has ended normally since: {fault}; the values are those of \
                  the scan before"
             ));
         }
         if content.found.as_ref().is_some_and(|it: &Found| it.other_is_broken) {
             let text =
-                "one of its two states is not whole, as after a power cut while it was written; the other is used";
+                "one of its two states is incomplete, as after a power cut while it was written; the other is used";
             loaded.notes.push(text.to_owned());
         }
         for (path, ty, bytes) in &content.variables {
@@ -247,7 +247,7 @@ impl Retained {
     fn why_gone(&self, map: &Map, path: &str, ty: &str) -> String {
         let running: Vec<usize> = (0..map.instances.len()).collect();
         let Ok(place) = path::resolve(map, &running, path) else {
-            return "the program has no such variable".to_owned();
+            return "the program does not have this variable".to_owned();
         };
         let is_part = |it: &Region| {
             let (start, rest) = (it.path.get(..path.len()), it.path.get(path.len()..));
@@ -298,7 +298,7 @@ fn difference(was: &str, is: &str) -> String {
     if old.eq_ignore_ascii_case(new) {
         return format!("it was another {new}");
     }
-    format!("it was {old}, and is {new} now")
+    format!("it was {old}, and is now {new}")
 }
 
 /// The type's text as a user writes it: bounds stay.

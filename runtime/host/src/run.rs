@@ -34,7 +34,7 @@ const LOWEST_PRIORITY: u32 = 65535;
 pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Summary, Error> {
     let running = running(map, options.program.as_deref())?;
     if options.cycle.is_some_and(|it| it <= 0) {
-        return Err(Error::Usage("the cycle is a time above zero".to_owned()));
+        return Err(Error::Usage("the cycle must be a time above zero".to_owned()));
     }
     if options.pacing.is_asked_for() && !options.realtime {
         let text = "--priority, --cpu, --overrun and --watchdog are for a run in real time: add --realtime";
@@ -50,7 +50,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     let schedule = Schedule::new(map, &running, options.cycle);
     let overlays = match options.overlay.is_empty() || options.trace.as_deref().is_some_and(trace::is_picture) {
         true => overlays(&columns, &options.overlay),
-        false => Err("it is for a picture: write --trace OUT.svg".to_owned()),
+        false => Err("it is only for a picture: write --trace OUT.svg".to_owned()),
     };
     let overlays = overlays.map_err(|it| Error::Usage(format!("--overlay: {it}")))?;
     let subject = Subject { map, columns, overlays, title: title(map, &running), cycle: schedule.shortest_period() };
@@ -141,7 +141,7 @@ struct Runner<'a> {
     retention: Option<Retention>,
     start: Start,
     messages: Messages,
-    /// The program's clock at this run's time 0: a retained timer goes on where it stood.
+    /// The program's clock at this run's time 0: a retained timer continues where it stopped.
     epoch: Time,
     out: Output,
     real: Option<RealTime>,
@@ -331,13 +331,13 @@ impl Runner<'_> {
         Ok(())
     }
 
-    /// What an output came to. A run in real time controls a machine: it goes on without an output that cannot be
+    /// What an output came to. A run in real time controls a machine: it continues without an output that cannot be
     /// written, and says so.
     fn needed<T>(&self, written: Result<T, Error>) -> Result<Option<T>, Error> {
         match written {
             Ok(it) => Ok(Some(it)),
             Err(error) if self.options.realtime => {
-                crate::error::tell(format_args!("warning: {error}; the program runs on without it"));
+                crate::error::tell(format_args!("warning: {error}; the program continues without it"));
                 Ok(None)
             }
             Err(error) => Err(error),
@@ -349,7 +349,7 @@ impl Runner<'_> {
         for message in self.messages.take(self.map, self.machine.state()) {
             if self.options.json {
                 let printed = self.options.print_json(&message.json(scan));
-                // In real time, who reads no objects is told of that at the end.
+                // In real time, users who do not read objects get a warning at the end.
                 if !self.options.realtime {
                     printed?
                 }
@@ -440,7 +440,7 @@ impl Runner<'_> {
         };
         let saved = self.retention.as_mut().map_or(Ok(()), |it| it.finish(ending));
         if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
-            crate::error::tell(format_args!("note: no scan lies between --from and --to"));
+            crate::error::tell(format_args!("note: no scan is between --from and --to"));
         }
         let written = self.show(subject);
         let written = self.needed(written).map(drop);

@@ -64,7 +64,7 @@ mod unix {
         FIGURES.store(true, Ordering::Relaxed);
     }
 
-    /// The scan goes on: the process ends as one that does not listen.
+    /// The scan does not end: the process ends as one that ignores the signal would.
     extern "C" fn give_up(_: i32) {
         // SAFETY: POSIX allows both in a handler.
         unsafe {

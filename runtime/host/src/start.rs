@@ -1,4 +1,4 @@
-//! What a program starts with after an event: the initial values, and what the event keeps. Which
+//! The state of a program after an event: the initial values, and the values that the event keeps. Which
 //! variables those are is in the map; the compiler decides it.
 
 use crate::Machine;
@@ -53,7 +53,7 @@ impl Start {
         }
     }
 
-    /// All but what the event keeps takes its initial value.
+    /// Everything except what the event keeps takes its initial value.
     pub fn again(&self, event: Event, machine: &mut dyn Machine) {
         let before = machine.state().to_vec();
         machine.init();

@@ -1,4 +1,4 @@
-//! What the world does to a program, scan by scan: a CSV file.
+//! The inputs of a program, scan by scan: a CSV file.
 
 use crate::Error;
 use crate::csv::{self, Cell};
@@ -67,11 +67,11 @@ enum Column {
     Variable(Place),
     /// Of a trace, what is not an input: the program computes it.
     Computed(usize),
-    /// `|`: what is right of it is expected, which is no matter of a stimulus.
+    /// `|`: columns to the right of it are expected values, which a stimulus ignores.
     Bar,
 }
 
-/// Parts what goes in from what is expected to come out.
+/// Separates the inputs from the expected outputs.
 pub(crate) const BAR: &str = "|";
 
 /// The column of a trace that says when its scan ran.
@@ -147,7 +147,7 @@ struct Parser<'a> {
     columns: Vec<Column>,
     /// There is neither a scan nor a time: the rows are scans 1, 2, 3.
     is_numbered: bool,
-    /// It is a trace: what was given is given again.
+    /// It is a trace: its inputs are given again.
     is_trace: bool,
     /// Reals are written `3,5`.
     decimal_comma: bool,
@@ -187,9 +187,9 @@ impl Parser<'_> {
             text if same(text, "@event") => Ok(Column::Event),
             text if self.is_numbered => self.variable(cell, text),
             _ if position == 0 => {
-                Err(self.at(cell, format!("the first column is `scan` or `time`, not `{}`", cell.text)))
+                Err(self.at(cell, format!("the first column must be `scan` or `time`, not `{}`", cell.text)))
             }
-            _ if !self.columns.iter().any(is_clock) => Err(self.at(cell, "the first column is `scan` or `time`")),
+            _ if !self.columns.iter().any(is_clock) => Err(self.at(cell, "the first column must be `scan` or `time`")),
             text if self.is_trace => self.of_trace(position, cell, text),
             text => self.variable(cell, text),
         }
@@ -207,7 +207,7 @@ impl Parser<'_> {
     fn variable(&self, cell: &Cell, name: &str) -> Result<Column, Error> {
         let place = path::resolve(self.map, self.running, name).map_err(|text| self.at(cell, text))?;
         match place.constant {
-            true => Err(self.at(cell, format!("`{name}` is CONSTANT: nothing writes it"))),
+            true => Err(self.at(cell, format!("`{name}` is CONSTANT and cannot be written"))),
             false => Ok(Column::Variable(path::written(self.map, self.running, place))),
         }
     }
@@ -236,7 +236,7 @@ impl Parser<'_> {
             }
         }
         match (row.scan, row.time, cells.first()) {
-            (None, None, Some(first)) => Err(self.at(first, "the row does not say when: its first cell is empty")),
+            (None, None, Some(first)) => Err(self.at(first, "the row has no scan or time: its first cell is empty")),
             _ => Ok(row),
         }
     }
@@ -261,7 +261,7 @@ impl Parser<'_> {
     fn event(&self, cell: &Cell) -> Result<Event, Error> {
         let named = Event::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(&cell.text));
         named.ok_or_else(|| {
-            self.at(cell, format!("`{}` is no event: there are `restart`, `run` and `reset`", cell.text))
+            self.at(cell, format!("`{}` is not an event: expected `restart`, `run` or `reset`", cell.text))
         })
     }
 
@@ -317,7 +317,7 @@ mod tests {
         assert_eq!(third.writes, up(0));
     }
 
-    /// What a program computes is not given to it; a text may have become empty.
+    /// Values that a program computes are not given to it; a text may have become empty.
     #[test]
     fn a_trace_gives_its_inputs() {
         let stimulus = read("scan,time_ms,up,c.CV,name\n1,0,TRUE,5,a\n2,10.25,FALSE,6,\n").unwrap();
@@ -366,17 +366,17 @@ mod tests {
     fn mistakes_name_their_place() {
         for (text, expected) in [
             ("", "in.csv:1:1: it is empty: the first line names `scan` or `time`, and variables"),
-            ("up\n1\n", "in.csv:1:1: the first column is `scan` or `time`, not `up`"),
+            ("up\n1\n", "in.csv:1:1: the first column must be `scan` or `time`, not `up`"),
             ("scan,Upp\n", "in.csv:1:6: there is no variable `Upp`; did you mean `up`?"),
             ("scan,up,UP\n", "in.csv:1:9: `UP` already has a column"),
-            ("scan,limit\n", "in.csv:1:6: `limit` is CONSTANT: nothing writes it"),
+            ("scan,limit\n", "in.csv:1:6: `limit` is CONSTANT and cannot be written"),
             ("scan,up\n0,1\n", "in.csv:2:1: scans count from 1"),
             ("scan,up\nx,1\n", "in.csv:2:1: `x` is not the number of a scan"),
             ("time,up\n5,1\n", "in.csv:2:1: `5` is not a TIME: write `T#500ms` or `500ms`"),
             ("scan,up\n1,5\n", "in.csv:2:3: `5` is not a BOOL: write TRUE or FALSE"),
             ("scan,up\n1,1,1\n", "in.csv:2:5: the header has only 2 columns"),
-            ("scan,up\n,1\n", "in.csv:2:1: the row does not say when: its first cell is empty"),
-            ("scan,@event\n1,stop\n", "in.csv:2:3: `stop` is no event: there are `restart`, `run` and `reset`"),
+            ("scan,up\n,1\n", "in.csv:2:1: the row has no scan or time: its first cell is empty"),
+            ("scan,@event\n1,stop\n", "in.csv:2:3: `stop` is not an event: expected `restart`, `run` or `reset`"),
             ("scan,up\n3,1\n2,1\n", "in.csv:3:1: rows are out of order: this one is earlier than one above"),
             ("scan,up\n1,\"1\n", "in.csv:2:3: a quote that is not closed"),
         ] {

@@ -1,6 +1,6 @@
 //! How wide the terminal is.
 
-/// Characters in a line where there is no terminal, or none that says.
+/// Characters in a line without a terminal, or with one that does not give its width.
 const DEFAULT: usize = 100;
 /// Less has no room for a table.
 const LEAST: usize = 40;

@@ -30,7 +30,7 @@ pub(crate) struct Row<'a> {
     pub state: &'a [u8],
 }
 
-/// What a trace is about.
+/// The subject of a trace.
 #[derive(Debug)]
 pub(crate) struct Subject<'a> {
     pub map: &'a Map,
@@ -53,13 +53,13 @@ impl Subject<'_> {
 
 pub(crate) trait Sink {
     fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) -> io::Result<()>;
-    /// What is still to be written, after the last row.
+    /// Writes the rest, after the last row.
     fn finish(&mut self, subject: &Subject<'_>) -> io::Result<()>;
     /// Shows what has been written so far.
     fn flush(&mut self) -> io::Result<()>;
 }
 
-/// What a trace is written as.
+/// The forms of a trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Form {
     Rows,

@@ -128,7 +128,7 @@ fn decoded(ty: StringType, units: &[u8]) -> String {
     characters(units).collect()
 }
 
-/// `A`, or by its number what is hard to see: `$00`, `$D83D`.
+/// `A`, or the number of a character that is hard to see: `$00`, `$D83D`.
 pub fn format_character(value: Value) -> String {
     let (number, digits) = match value {
         Value::U8(it) => (u32::from(it), 2),

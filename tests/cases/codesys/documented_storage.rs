@@ -243,8 +243,8 @@ impl Main {
 
     /// METHOD start (documented_storage.st:18)
     ///
-    /// Before the first scan: starts the instances that are global, and those inside, if that has not been done.
-    /// A scan begins with it; where several PROGRAMs run, call it of all before the first scan of any.
+    /// Before the first scan: starts the global instances and those inside, if that has not been done.
+    /// Each scan begins with it; if several PROGRAMs run, call it for all of them before the first scan of any.
     pub fn start(&mut self, globals: &mut Globals) {
         if !self.started {
             // :18

@@ -210,7 +210,7 @@ impl VisitMut for Inserter<'_> {
     }
 }
 
-/// Whether an item is there for tests alone, or for some targets: what is not built cannot be changed either.
+/// Whether an item exists only for tests, or for some targets: what is not built cannot be changed either.
 pub fn is_test(attributes: &[Attribute]) -> bool {
     attributes.iter().any(|it| it.path().is_ident("test") || it.path().is_ident("cfg"))
 }

@@ -1,7 +1,7 @@
-//! `mutants TREE LIST SKIP FILE…`: puts every mutant of the files of a copy of the sources into them, each behind a
+//! `mutants TREE LIST SKIP FILE…`: puts every mutant of the files of a copy of the sources into them, each with a
 //! switch, so that one build holds all. The program that is made asks `STAUNCH_MUTANT` for the one that is on.
 //! `LIST` gets a line for each: its number, its place and what it changes. The numbers in the file `SKIP` get no
-//! switch: what they would make does not compile. What is for tests alone gets none either.
+//! switch: what they would make does not compile. Code that is only for tests gets none either.
 
 mod insert;
 

@@ -1,4 +1,4 @@
-//! Rewrites the files beside golden cases, where they exist: `cargo bless [filter]`.
+//! Rewrites the files next to golden cases, where they exist: `cargo bless [filter]`.
 
 use staunch_tests::{case, cases, golden};
 use std::process::ExitCode;

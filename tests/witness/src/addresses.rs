@@ -1,4 +1,4 @@
-//! Direct addresses: what lies at one is one variable, whoever declares it.
+//! Direct addresses: an address is one variable, whoever declares it.
 
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::shared::Window;
@@ -9,7 +9,7 @@ use staunch_runtime::Family;
 /// Bytes of each area of the process image.
 const IMAGE: usize = 1024;
 
-/// Where it is, and what lies there where no declaration says more.
+/// Where it is, and its type if no declaration says more.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Address {
     /// `I`, `Q` or `M`; in OpenPLC each size has registers of its own.
@@ -94,7 +94,7 @@ impl<'a> Machine<'a> {
         })
     }
 
-    /// Adds the variables of a POU that lie at addresses to the names of its body.
+    /// Adds the variables of a POU that have addresses to the names of its body.
     pub(crate) fn name_addresses(&self, frame: &mut Frame<'a>, pou: usize) -> Outcome<()> {
         for it in &self.declared.pous[pou].variables {
             if let Some(address) = &it.address {

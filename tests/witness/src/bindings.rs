@@ -1,4 +1,4 @@
-//! VAR_CONFIG: variables of single instances that get what lies at an address before each run of their PROGRAM, and give
+//! VAR_CONFIG: variables of single instances that get the value at an address before each run of their PROGRAM, and give
 //! it back after it, and such that start with a value of their own.
 
 use crate::addresses::Address;

@@ -273,7 +273,7 @@ impl<'a> Machine<'a> {
             outer.names.insert(key.clone(), self.statics[&(owner, key)].clone());
         }
         if !method && frame.this.as_ref().is_some_and(|it| it.1.at == instance.at) {
-            // In its own POU it has the in-outs of the call that goes on.
+            // In its own POU it has the in-outs of the current call.
             for it in formals.iter().filter(|it| it.kind == VarKind::InOut) {
                 let key = it.name.to_ascii_uppercase();
                 outer.names.extend(frame.names.get(&key).map(|place| (key, place.clone())));
@@ -360,8 +360,8 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
-    /// The callee's names: an instance's are there already; others are made anew for this call. A
-    /// text of another capacity is passed as a copy, of which the second list tells.
+    /// The callee's names: an instance's exist already; others are made anew for this call. A
+    /// text of another capacity is passed as a copy, which is in the second list.
     pub(crate) fn enter(
         &mut self,
         pou: usize,
@@ -371,7 +371,7 @@ impl<'a> Machine<'a> {
         // Each with the number of its argument: they come back in the order in which those are written.
         let mut copies: Vec<(usize, (Place<'a>, Place<'a>))> = Vec::new();
         let mut in_outs = Vec::new();
-        // What a call gives is there before the initial values that ask for it.
+        // The arguments of a call are set before the initial values that use them.
         let is_given =
             |it: &usize| matches!(self.declared.pous[pou].variables[*it].kind, VarKind::Input | VarKind::InOut);
         let (mut order, others): (Vec<_>, Vec<_>) = (0..self.declared.pous[pou].variables.len()).partition(is_given);
@@ -524,7 +524,7 @@ impl<'a> Machine<'a> {
         formals.retain(|it| !without.iter().any(|name| it.name.eq_ignore_ascii_case(name)));
         let values = self.passed(frame, &formals, arguments)?.into_iter().map(|it| match it.given {
             Given::Value(value) => Ok((it.name, value)),
-            Given::Place(_) | Given::Output { .. } => unknown("an argument of FB_init that is no input"),
+            Given::Place(_) | Given::Output { .. } => unknown("an argument of FB_init that is not an input"),
         });
         values.collect()
     }
@@ -632,7 +632,7 @@ impl<'a> Machine<'a> {
         }
         let Some(tag) = tag else { return unknown("an instruction without a tag") };
         let tag = self.checked(tag)?;
-        let Type::Block(info) = tag.ty else { return unknown("an instruction on what is no tag") };
+        let Type::Block(info) = tag.ty else { return unknown("an instruction on something other than a tag") };
         let instruction = info.instructions.iter().position(|it| it.name.eq_ignore_ascii_case(name.text));
         let Some(instruction) = instruction else { return unknown("this instruction") };
         self.run_block(&tag, info, instruction, rung);

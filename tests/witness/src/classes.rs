@@ -23,7 +23,7 @@ impl<'a> Declarations<'a> {
         line
     }
 
-    /// The witness has METHODs by their names alone: none that only their parameters tell apart, which CODESYS has not.
+    /// The witness finds METHODs only by their names: overloads, which CODESYS does not have, are not supported.
     pub fn refuse_overloads(&self) -> Outcome<()> {
         if self.is_codesys() {
             return Ok(());
@@ -42,13 +42,13 @@ impl<'a> Declarations<'a> {
                 |it: &Pou<'a>| it.name.eq_ignore_ascii_case(method.name) && parameters(it) != parameters(method);
             if beside.any(|it| it.1.owner == Some(class) && it.1.name.eq_ignore_ascii_case(method.name) || is_one(it.1))
             {
-                return unknown("METHODs of one name");
+                return unknown("METHODs with the same name");
             }
         }
         Ok(())
     }
 
-    /// The METHOD of that name that a class itself declares.
+    /// The METHOD with this name that a class itself declares.
     pub fn own_routine(&self, class: usize, name: &str) -> Option<usize> {
         self.pous
             .iter()
@@ -62,7 +62,7 @@ impl<'a> Declarations<'a> {
         })
     }
 
-    /// The METHOD or ACTION of that name, its own or inherited.
+    /// The METHOD or ACTION with this name, its own or inherited.
     pub fn routine_of(&self, class: usize, name: &str) -> Option<usize> {
         self.routine_where(class, name, |it| matches!(it, PouKind::Method | PouKind::Action))
     }
@@ -193,7 +193,7 @@ impl<'a> Machine<'a> {
     }
 
     /// The instance or structure before a point. A variable of an INTERFACE leads on to its instance; what a call or a
-    /// GET gives is kept as long as the call around it goes on.
+    /// GET gives is kept until the call around it ends.
     pub(crate) fn receiver(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Place<'a>> {
         let value = match (&expr.kind, self.property(frame, expr)?) {
             (_, Some((name, class, instance))) => self.got(name, class, &instance)?,

@@ -16,7 +16,7 @@ impl<'a> Declarations<'a> {
                     Some(ty) => self.enumerated(&[**ty], name),
                     None => unknown("an enumerator without its type"),
                 },
-                _ => unknown("a bound that is no number"),
+                _ => unknown("a bound that is not a number"),
             },
             ExprKind::Paren(inner) => self.number(inner),
             ExprKind::Unary(UnaryOp::Neg, inner) => Ok(-self.number(inner)?),
@@ -44,7 +44,7 @@ impl<'a> Declarations<'a> {
         let Some((last, before)) = path.split_last() else { return unknown("no name") };
         match self.constant(path).map(|it| &it.kind) {
             Some(InitialKind::Value(expr)) => self.number(expr),
-            Some(_) => unknown("a constant that is no number"),
+            Some(_) => unknown("a constant that is not a number"),
             None if !before.is_empty() => self.enumerated(before, last),
             None => match self.bare_enumerator(last.text, None) {
                 Some(value) => value.as_integer(),

@@ -39,7 +39,7 @@ pub(crate) struct Variable<'a> {
     pub slot: Slot<'a>,
     /// Whether it has a trigger.
     pub is_edge: bool,
-    /// Where it lies in the process image.
+    /// Where it is in the process image.
     pub address: Option<Address>,
 }
 
@@ -187,7 +187,7 @@ impl<'a> Declarations<'a> {
                 // What is CONSTANT goes into it as a copy.
                 return unknown("VAR_IN_OUT CONSTANT");
             }
-            // An external variable is the global of its name.
+            // An external variable is the global with its name.
             if block.kind != VarKind::External {
                 variables.extend(self.variables(block)?);
             }
@@ -239,7 +239,7 @@ impl<'a> Declarations<'a> {
             }
             TypeKind::Subrange { base, low, high } => match self.named(&[*base])?.ty.elementary() {
                 Some(base) => Type::Subrange(base, self.number(low)?, self.number(high)?),
-                None => return unknown("a subrange of what is no integer"),
+                None => return unknown("a subrange of something other than an integer"),
             },
             TypeKind::Array { bounds, element } => self.array(bounds, element)?,
             TypeKind::Struct(declared) => {
@@ -316,7 +316,7 @@ impl<'a> Declarations<'a> {
         Ok(made)
     }
 
-    /// The type of this name: elementary, declared, a POU's instance, or a standard block.
+    /// The type with this name: elementary, declared, a POU's instance, or a standard block.
     pub(crate) fn named(&mut self, path: &[Name<'a>]) -> Outcome<Slot<'a>> {
         let slot = |ty| Ok(Slot::of(ty));
         match (path, self.names.find(path)) {
@@ -380,7 +380,7 @@ impl<'a> Declarations<'a> {
             None => (Vec::new(), Vec::new()),
         };
         for block in pou.blocks.iter().filter(|it| is_field(it.kind)) {
-            // What lies at an address is no part of an instance.
+            // A variable at an address is not part of an instance.
             let own = self.fields(block.vars.iter().filter(|it| it.known_address().is_none()))?;
             let is_kept = block.retain.is_some() || block.persistent.is_some();
             fields.extend(own.into_iter().map(|(name, slot)| (name, Slot { is_kept, ..slot })));

@@ -1,4 +1,4 @@
-//! Inputs that are edges: a trigger is kept behind each, which sees the input whenever the body of its instance runs.
+//! Inputs that are edges: each has a trigger, which sees the input whenever the body of its instance runs.
 //! Text of the class reads the trigger's Q by the input's name.
 
 use crate::machine::{Frame, Machine};

@@ -1,4 +1,4 @@
-//! CODESYS' exceptions, as its page and Beckhoff's tell them: a fault in `__TRY` goes to `__CATCH`, and `__FINALLY` comes last.
+//! CODESYS' exceptions, as its page and Beckhoff's describe them: a fault in `__TRY` goes to `__CATCH`, and `__FINALLY` comes last.
 
 use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::statements::Flow;
@@ -32,7 +32,7 @@ impl<'a> Machine<'a> {
         }
     }
 
-    /// What `__SYSTEM.ExceptionCode` calls it; none for what no program goes on after.
+    /// What `__SYSTEM.ExceptionCode` calls it; none for a fault after which no program continues.
     fn number_of(&self, kind: FaultKind) -> Option<u32> {
         let name = match kind {
             FaultKind::DivideByZero => "RTSEXCPT_DIVIDEBYZERO",

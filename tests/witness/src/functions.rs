@@ -123,7 +123,7 @@ impl<'a> Machine<'a> {
                 other => other,
             };
         }
-        let Some(Type::Array(array)) = ty else { return unknown("a bound of what is no array") };
+        let Some(Type::Array(array)) = ty else { return unknown("a bound of something other than an array") };
         let number = if name == "LOWER_BOUND" { array.low } else { array.high };
         Ok(Value { ty: Type::Elementary(Elementary::Dint), cells: vec![integer_cell(Elementary::Dint, number)] })
     }
@@ -560,7 +560,7 @@ pub(crate) fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Ou
             }
             ArgumentKind::Input(name, expr) => {
                 let position = names.iter().position(|it| it.eq_ignore_ascii_case(name.text));
-                // IN1, IN2 and IN0, IN1 go on as far as arguments do.
+                // IN1, IN2 and IN0, IN1 continue as far as arguments do.
                 let numbered = name.text.trim_start_matches(|it: char| it.is_ascii_alphabetic()).parse::<usize>();
                 let position = position.or_else(|| {
                     let last = names.last()?.trim_start_matches(|it: char| it.is_ascii_alphabetic());

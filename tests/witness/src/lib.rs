@@ -2,8 +2,8 @@
 //!
 //! The executors share one front end, so that they agree proves back ends, not meaning. The witness
 //! shares none of it: it walks the tree as it was parsed, in the order in which it is written, over
-//! a memory of whole values. It has no IR, folds nothing and hoists nothing. What it takes from
-//! elsewhere is the parser, the runtime's arithmetic on two values, and the runtime's blocks.
+//! a memory of whole values. It has no IR, folds nothing and hoists nothing. From elsewhere it only uses
+//! the parser, the runtime's arithmetic on two values, and the runtime's blocks.
 //!
 //! It takes programs that `check` accepts, and does not look for mistakes. Where it says
 //! [`Stop::Unknown`] it does not know a construct.

@@ -61,7 +61,7 @@ pub struct Machine<'a> {
     pub(crate) eno: Option<Place<'a>>,
 }
 
-/// The variables that a body can name, apart from the globals.
+/// The variables that a body can name, without the globals.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Frame<'a> {
     pub names: HashMap<String, Place<'a>>,

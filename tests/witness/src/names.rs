@@ -58,12 +58,12 @@ impl<'a> Names<'a> {
     fn add_globals(&mut self, block: &'a VarBlock<'a>) -> Outcome<()> {
         let names: Vec<_> = block.vars.iter().flat_map(|it| &it.names).map(|it| self.key(it)).collect();
         let all_new = names.into_iter().all(|it| self.globals.insert(it));
-        if all_new { Ok(()) } else { unknown("two global variables of one name") }
+        if all_new { Ok(()) } else { unknown("two global variables with the same name") }
     }
 
     fn add(&mut self, name: &Name<'a>, declared: Declared<'a>) -> Outcome<()> {
         match self.declared.insert(self.key(name), declared) {
-            Some(_) => unknown("two types or POUs of one name"),
+            Some(_) => unknown("two types or POUs with the same name"),
             None => Ok(()),
         }
     }

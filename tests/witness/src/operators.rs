@@ -31,7 +31,7 @@ impl<'a> Machine<'a> {
                 ExprKind::Unary(UnaryOp::Plus, base) => return self.binary(frame, op, base, right, at, asked),
                 ExprKind::Unary(UnaryOp::Neg, base) => {
                     let power = self.binary(frame, op, base, right, at, asked)?;
-                    let Some(ty) = power.ty.elementary() else { return unknown("a power that is no number") };
+                    let Some(ty) = power.ty.elementary() else { return unknown("a power that is not a number") };
                     return self.computed("NEG", ty, &[power.as_scalar()?], at);
                 }
                 ExprKind::Binary(_, BinaryOp::Power, _) => return unknown("a power of a power"),
@@ -39,7 +39,7 @@ impl<'a> Machine<'a> {
             }
         }
         let of_bits = matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor);
-        // A negative one is a DINT, with zeros above it beside 64 bits.
+        // A negative one is a DINT, with zeros above it next to a 64-bit operand.
         let is_filled = |it: &Expr<'_>| untyped(it).is_some() && literal_number(it).is_none_or(|it| it < 0);
         if of_bits && self.declared.family == Family::Logix && [left, right].into_iter().any(is_filled) {
             return unknown("the bits of an immediate value in Logix");
@@ -250,7 +250,7 @@ macro_rules! shifted {
     };
 }
 
-/// The runtime's operation of this name, at a repr.
+/// The runtime's operation with this name, at a repr.
 fn apply(name: &str, repr: Repr, operands: &[Scalar]) -> Option<Result<Scalar, FaultKind>> {
     match name {
         "ADD" => at!(number repr operands add a b),
@@ -294,7 +294,7 @@ fn apply(name: &str, repr: Repr, operands: &[Scalar]) -> Option<Result<Scalar, F
 }
 
 impl Machine<'_> {
-    /// The type of a number beside a typed operand: the operand's, or a wider one that holds it.
+    /// The type of a number next to a typed operand: the operand's, or a wider one that holds it.
     fn beside(
         &self,
         ty: &Type<'_>,
@@ -302,7 +302,7 @@ impl Machine<'_> {
         number: Option<i128>,
         asked: Option<&Type<'_>>,
     ) -> Outcome<Elementary> {
-        let Some(ty) = ty.elementary() else { return unknown("a number beside what is none") };
+        let Some(ty) = ty.elementary() else { return unknown("a number with an operand that is not a number") };
         match kind {
             _ if ty.is_time() => Ok(if kind == Untyped::Integer { Elementary::Lint } else { Elementary::Lreal }),
             Untyped::Integer => Ok(number.map_or(ty, |it| ty.that_holds(it))),

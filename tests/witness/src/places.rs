@@ -111,7 +111,7 @@ impl<'a> Machine<'a> {
         if let (Type::Text(text), None) = (&base.ty, base.window) {
             return self.character(base, *text, number, (FaultKind::IndexOutOfRange, index.span));
         }
-        let Type::Array(array) = &base.ty else { return unknown("an index of what is no array") };
+        let Type::Array(array) = &base.ty else { return unknown("an index into something other than an array") };
         if !(array.low..=array.high).contains(&number) {
             return Err(self.fault(FaultKind::IndexOutOfRange, index.span));
         }
@@ -138,7 +138,7 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Flow<'a>> {
         let part = part_named(part.text)?;
         let value = self.value_as(frame, value, &Type::Elementary(part.ty))?.as_integer()?;
-        let Some(ty) = place.ty.elementary() else { return unknown("bits of what is no number") };
+        let Some(ty) = place.ty.elementary() else { return unknown("bits of something other than a number") };
         let width = ty.repr().size() * 8;
         let place = &self.checked(place.clone())?;
         let old = self.read(place).as_integer()? & mask(width);

@@ -84,7 +84,9 @@ impl<'a> Machine<'a> {
         let object = match &self.memory[target.at] {
             Cell::Reference(Some(object)) => (**object).clone(),
             Cell::Reference(None) => return Ok(()),
-            Cell::Scalar(_) | Cell::Text(_) | Cell::Bytes(_) => return unknown("__DELETE of what is no reference"),
+            Cell::Scalar(_) | Cell::Text(_) | Cell::Bytes(_) => {
+                return unknown("__DELETE of something other than a reference");
+            }
         };
         let Some(berth) = self.pool.iter().position(|it| it.place.at == object.at) else {
             return Err(self.fault(FaultKind::NotOfPool, span));

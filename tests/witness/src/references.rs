@@ -68,7 +68,7 @@ impl<'a> Machine<'a> {
                 let cell = value.cells[0].clone();
                 self.followed(cell, *it, span)
             }
-            _ => unknown("^ after what is no reference"),
+            _ => unknown("^ after something other than a reference"),
         }
     }
 
@@ -88,7 +88,7 @@ impl<'a> Machine<'a> {
                         let place = self.checked(place)?;
                         self.memory[place.at].clone()
                     }
-                    // `i := p^` goes where `p` leads, and is no access.
+                    // `i := p^` goes where `p` leads, and is not an access.
                     _ => Cell::Reference(Some(Box::new(place)).filter(|it| it.nowhere.is_none())),
                 },
                 None => {
@@ -136,7 +136,7 @@ impl<'a> Machine<'a> {
         value: &'a Expr<'a>,
     ) -> Outcome<Flow<'a>> {
         let target = self.unfollowed(frame, target)?;
-        let Type::Reference(reference) = target.ty else { return unknown("?= to what is no reference") };
+        let Type::Reference(reference) = target.ty else { return unknown("?= to something other than a reference") };
         let value = self.reference_value(frame, value, &target.ty)?;
         let target = self.checked(target)?;
         let cell = self.attempted(&value, reference)?;
@@ -147,7 +147,7 @@ impl<'a> Machine<'a> {
     fn attempted(&self, value: &Value<'a>, reference: Reference<'a>) -> Outcome<Cell<'a>> {
         let target = reference.target.and_then(|it| self.declared.pou_named(crate::declarations::path_of(it)));
         let Some(target) = target else { return unknown("?= to a type without a name") };
-        let Cell::Reference(to) = &value.cells[0] else { return unknown("?= of what is no reference") };
+        let Cell::Reference(to) = &value.cells[0] else { return unknown("?= of something other than a reference") };
         let fits = |it: &Place<'a>| it.ty.class().is_some_and(|it| self.declared.is_a(it, target));
         Ok(Cell::Reference(to.clone().filter(|it| fits(it))))
     }
@@ -203,7 +203,7 @@ impl<'a> Machine<'a> {
         let are_instances = of_interface(a) && of_interface(b);
         let at = |it: &Value<'a>| match &it.cells[0] {
             Cell::Reference(to) => Ok(to.as_ref().map(|it| (it.at, it.ty.class().filter(|_| are_instances)))),
-            _ => unknown("a reference beside what is none"),
+            _ => unknown("a reference with an operand that is not a reference"),
         };
         match op {
             BinaryOp::Eq => Ok(Value::bool(at(a)? == at(b)?)),

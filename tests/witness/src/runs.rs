@@ -18,7 +18,7 @@ pub(crate) struct Run<'a> {
     pub runs: bool,
 }
 
-/// What decides whether a run that is due happens: SINGLE, and the INTERVAL beside it.
+/// What decides whether a run that is due happens: SINGLE, and the INTERVAL with it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Task<'a> {
     single: Option<&'a Expr<'a>>,

@@ -1,5 +1,5 @@
 //! Bytes that several variables share: the members of a UNION, and variables whose direct addresses overlap.
-//! A place there is some bits of one cell, the lowest byte first. Structures lie there as C has them.
+//! A place there is some bits of one cell, the lowest byte first. Structures have C's layout there.
 
 use crate::machine::Machine;
 use crate::storage::{Cell, Place, Value};
@@ -69,7 +69,7 @@ impl<'a> Type<'a> {
         }
     }
 
-    /// The bit string that is as wide as the narrowest of what lies there.
+    /// The bit string that is as wide as the narrowest variable there.
     pub fn smallest_part(&self) -> Option<Elementary> {
         let bits = [Elementary::Byte, Elementary::Word, Elementary::Dword, Elementary::Lword];
         match self {
@@ -155,7 +155,7 @@ impl<'a> Place<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// What lies at a place among shared bytes. A type that cannot be there was refused when it was declared.
+    /// The value at a place among shared bytes. A type that cannot be there was refused when it was declared.
     pub(crate) fn unpacked(&self, place: &Place<'a>, window: Window) -> Vec<Cell<'a>> {
         let first = window.bit / 8;
         match &place.ty {

@@ -28,7 +28,7 @@ pub fn shrink(text: &str, keeps: &dyn Fn(&str) -> bool) -> String {
                 }
                 let candidate = applied(&lines, edit);
                 if keeps(&joined(&candidate)) {
-                    // Its own edits go on at the same place.
+                    // Its own edits continue at the same place.
                     lines = candidate;
                     found = edits(&lines);
                     smaller = true;

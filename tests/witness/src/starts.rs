@@ -159,7 +159,7 @@ impl<'a> Machine<'a> {
 fn computed(stop: Stop) -> Stop {
     match stop {
         Stop::Fault(fault) if fault.kind == FaultKind::NullReference => {
-            Stop::Unknown("an initial value behind a reference".to_owned())
+            Stop::Unknown("an initial value reached through a reference".to_owned())
         }
         stop => stop,
     }

@@ -216,7 +216,7 @@ impl<'a> Machine<'a> {
     ) -> Outcome<Flow<'a>> {
         let place = self.place(frame, counter)?;
         let place = self.checked(place)?;
-        let Some(base) = place.ty.elementary() else { return unknown("a counter that is no integer") };
+        let Some(base) = place.ty.elementary() else { return unknown("a counter that is not an integer") };
         let first = self.value_as(frame, from, &place.ty)?;
         self.write(&place, &first);
         let last = self.value_as(frame, to, &Type::Elementary(base))?.as_integer()?;

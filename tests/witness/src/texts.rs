@@ -66,7 +66,7 @@ fn replaced(text: &[u16], by: &[u16], count: i128, position: i128) -> Units {
     [start, by, &rest[before(rest, count)..]].concat()
 }
 
-/// `FIND`: the position of the first time that a pattern is there.
+/// `FIND`: the position of the first match of a pattern.
 fn found(text: &[u16], pattern: &[u16]) -> usize {
     let is_there = |at: &usize| text[*at..].starts_with(pattern);
     (0..text.len()).find(|it| !pattern.is_empty() && is_there(it)).map_or(0, |it| it + 1)

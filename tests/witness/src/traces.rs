@@ -25,7 +25,7 @@ impl<'a> Machine<'a> {
     /// Gives a variable a value from outside.
     ///
     /// # Errors
-    /// Where there is no such variable.
+    /// If the variable does not exist.
     pub fn put(&mut self, path: &str, value: Input) -> Result<(), Stop> {
         let own = path.rsplit('.').next().unwrap_or_default();
         if own.starts_with("__") {
@@ -51,7 +51,7 @@ impl<'a> Machine<'a> {
         Ok(())
     }
 
-    /// What lies at a direct address that the executors gave a name of their own, of so many bytes, or of one bit.
+    /// The variable at a direct address to which the executors gave their own name, of so many bytes, or of one bit.
     pub fn addressed(&self, path: &str, size: u32) -> Option<String> {
         let place = self.address_of(path, size)?;
         Some(shown(&place.ty, &self.read(&place).cells[0]))
@@ -72,7 +72,7 @@ impl<'a> Machine<'a> {
         self.at_name(&format!("{}{letter}{}", bits.get(..1)?, start / bytes + index)).ok()
     }
 
-    /// Path and place of each variable that is no whole of others.
+    /// Path and place of each variable that does not consist of others.
     fn places(&self) -> Vec<(String, Place<'a>)> {
         let mut found = Vec::new();
         for it in &self.declared.globals {
@@ -87,7 +87,7 @@ impl<'a> Machine<'a> {
                 let place = &self.statics[&(number, it.name.to_ascii_uppercase())];
                 let owner = pou.owner.map_or(String::new(), |it| format!("{}_", self.declared.pous[it].name));
                 let name = format!("{owner}{}_{}", pou.name, it.name);
-                // A global of this name makes the executors take another.
+                // A global with this name makes the executors take another.
                 if !self.globals.contains_key(&name.to_ascii_uppercase()) {
                     self.leaves(&format!("Globals.{name}"), place, &mut found);
                 }
@@ -104,7 +104,7 @@ impl<'a> Machine<'a> {
             // The globals hold a PROGRAM that only others call.
             let path = if run.runs { run.name.to_owned() } else { format!("Globals.{}", run.name) };
             self.leaves(&path, &run.place, &mut found);
-            // What is connected is beside it.
+            // The connected variables are next to it.
             self.leaves(&format!("{path}.program"), &run.place, &mut found);
         }
         found

@@ -94,7 +94,7 @@ impl Elementary {
         matches!(self, E::Char | E::Wchar)
     }
 
-    /// Whether this is no number, though an integer is behind it.
+    /// Whether this is not a number, though its values are integers.
     fn is_other(self) -> bool {
         self.is_time() || self.is_date() || self.is_char()
     }
@@ -153,7 +153,7 @@ impl Elementary {
         }
     }
 
-    /// The type itself, or a wider one that holds a literal beside it.
+    /// The type itself, or a wider one that holds a literal next to it.
     pub fn that_holds(self, number: i128) -> Self {
         let own = [E::Int, E::Dint, E::Lint, E::Ulint].into_iter().find(|it| it.holds(number));
         if self.holds(number) { self } else { own.and_then(|it| self.meets(it)).unwrap_or(self) }
@@ -314,7 +314,7 @@ impl Type<'_> {
         }
     }
 
-    /// The elementary type whose values are behind those of this type.
+    /// The elementary type of the values of this type.
     pub fn base(&self) -> Option<Elementary> {
         match self {
             Self::Enum(it) => Some(it.base),

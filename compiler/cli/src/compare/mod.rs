@@ -55,7 +55,7 @@ pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     )?;
     let Some(program) = from.program_to_run(args.program.as_deref())? else {
         if from.common.format() == MessageFormat::Human {
-            output::tell(format_args!("the program is compared once `--from {}` accepts it", args.from.name));
+            output::tell(format_args!("the program can be compared when `--from {}` accepts it", args.from.name));
         }
         return Ok(REJECTED);
     };
@@ -162,7 +162,7 @@ fn side_by_side(
     let mut findings = Findings::new(&pair, &world, &uses, renamed);
     let accepted = args.accept.as_deref().map(Accepted::read).transpose()?.unwrap_or_default();
     let verdict = if same_program && args.stimulus.is_none() && !world.unfollowed.is_empty() {
-        let tried = vec!["both systems run the same program, by the rules that are followed here".to_owned()];
+        let tried = vec!["both systems run the same program, by the rules that Staunch follows".to_owned()];
         Verdict::NotFound { tried, left: world.unfollowed.clone() }
     } else if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
@@ -187,37 +187,35 @@ fn side_by_side(
     Ok(Compared { pair, world, findings, accepted, verdict, rest, without_run })
 }
 
-/// Whether one program may go on, on one of the systems alone, where it ends by a fault here.
+/// Whether one program may continue, on only one of the systems, where it ends with a fault here.
 fn may_end_otherwise(args: &Compare, program: &Program) -> bool {
     let [from, to] = [args.from.dialect, args.to.dialect];
     let differs = |part| otherwise(from, part).map(|it| it.what) != otherwise(to, part).map(|it| it.what);
     differs(Part::Subrange) && !program.bounds.is_empty() || differs(Part::DivisionByZero) && usage::divides(program)
 }
 
-/// What is to be compared is there on both sides: what is not would be passed over in silence.
+/// Everything to compare must exist on both sides: otherwise it would be silently ignored.
 fn check_compared(pair: &Pair, args: &Compare, only: &[String]) -> Result<(), String> {
     let programs = if args.against.is_some() { "programs" } else { "systems' programs" };
     match pair.unknown_name(only) {
         Some((name, 0)) => return Err(format!("--vars: there is no variable `{name}`")),
         Some((name, 1)) => return Err(format!("--vars: only one of the two {programs} has a variable `{name}`")),
         Some((name, _)) => {
-            return Err(format!(
-                "--vars: `{name}` is a CONSTANT, or an input of a block: what it is given is not compared"
-            ));
+            return Err(format!("--vars: `{name}` is a CONSTANT or an input of a block, which is not compared"));
         }
         None => {}
     }
     if pair.compared.is_empty() && !only.is_empty() {
-        return Err(format!("--vars names nothing but inputs, which are the same for both {programs}"));
+        return Err(format!("--vars names only inputs, which are the same for both {programs}"));
     }
     let Some(against) = args.against.as_deref().filter(|_| only.is_empty()) else { return Ok(()) };
     if let Some((side, name)) = pair.only_one_has(|it| it.at.is_output && it.field.is_some()).first() {
         let of = if *side == 0 { "the first program".to_owned() } else { against.display().to_string() };
-        let help = "declare it in both, or name what is to be compared with --vars";
-        return Err(format!("`{name}` is an output of {of} alone: {help}"));
+        let help = "declare it in both, or name the variables to compare with --vars";
+        return Err(format!("only {of} has the output `{name}`: {help}"));
     }
     if pair.compared.is_empty() {
-        return Err(format!("{} and the program have no variable in common that could be compared", against.display()));
+        return Err(format!("{} and the program have no common variable to compare", against.display()));
     }
     Ok(())
 }

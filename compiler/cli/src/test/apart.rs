@@ -71,7 +71,7 @@ pub fn fixture(executable: &Path, test: &Test, turns: u64, pace: Pace, steps: &[
         command.arg("--stimulus").arg(&stimulus).arg(format!("--cycle={}ns", pace.cycle));
         trace(command, test, u64::try_from(steps.len()).unwrap_or(u64::MAX), turns, names)
     };
-    // Without assertions there is no variable that says which has failed.
+    // Without assertions no variable says which one has failed.
     let seen = if test.failed.is_empty() { &columns[0][0].0 } else { &test.failed };
     let first = traced(std::slice::from_ref(seen))?;
     let failures = first.rows.iter().filter_map(|it| it.last()?.parse::<usize>().ok()?.checked_sub(1));

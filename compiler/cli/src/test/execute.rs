@@ -31,7 +31,7 @@ pub struct Suite<'p> {
     minor: Mutex<Minor>,
 }
 
-/// Minor faults of all tests, and what is told of them: as text, and as JSON.
+/// Minor faults of all tests, and the report on them: as text, and as JSON.
 #[derive(Default)]
 struct Minor {
     faults: MinorFaults,
@@ -108,7 +108,7 @@ impl<'p> Suite<'p> {
         Ok(Executor { runs, turns: self.turns, pace: self.pace, counts: self.counts, minor: &self.minor })
     }
 
-    /// What is told of the minor faults of tests that ran here: as text, and as JSON.
+    /// The report on the minor faults of tests that ran here: as text, and as JSON.
     pub fn minor_faults(&self) -> Option<(String, String)> {
         self.minor.lock().ok()?.told.clone()
     }

@@ -15,7 +15,7 @@ pub fn text(report: &Report<'_>) -> String {
         for result in suite {
             let count = titles.entry(&result.title).or_default();
             *count += 1;
-            // What reads the file takes two tests of one name for one.
+            // Readers of the file take two tests with the same name for one.
             let title = if *count == 1 { result.title.clone() } else { format!("{} ({count})", result.title) };
             text += &case(result, &title);
         }

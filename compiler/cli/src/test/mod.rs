@@ -1,4 +1,4 @@
-//! `staunch test`: each TEST of the sources, and each table beside them, runs from a fresh state.
+//! `staunch test`: each TEST of the sources, and each table next to them, runs from a fresh state.
 
 mod apart;
 mod coverage;
@@ -27,7 +27,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let tables = table::tables(session)?;
     if session.tests.is_empty() && tables.is_empty() {
-        return Err("the sources hold no TEST, and no table is beside them".to_owned());
+        return Err("the sources have no TEST, and no table is next to them".to_owned());
     }
     let tests: Vec<(usize, &Test)> = session.tests.iter().enumerate().filter(|it| args.wants_of(it.1)).collect();
     let wanted: Vec<Table> = tables.iter().filter(|it| args.wants(&it.title)).cloned().collect();
@@ -67,7 +67,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
     }
     if run.report.failed() > 0 {
         if args.mutants.is_some() {
-            session.say("Skipped", "the mutants: they are tried where all tests pass");
+            session.say("Skipped", "the mutants: they are tried only if all tests pass");
         }
         return Ok(REJECTED);
     }
@@ -80,7 +80,7 @@ pub fn test(session: &Session, args: &args::Test) -> Result<u8, String> {
 /// Why no test runs, though the sources hold some, or what may hold some.
 fn none_to_run(session: &Session, args: &args::Test, tables: &[Table]) -> String {
     let Some(wanted) = &args.filter else {
-        return "no test is there to run: the suites and fixtures of the sources have none".to_owned();
+        return "no test to run: the suites and fixtures of the sources have none".to_owned();
     };
     let (groups, single): (Vec<_>, Vec<_>) =
         session.tests.iter().partition(|it| it.suite.is_some() || it.fixture.is_some());
@@ -126,7 +126,7 @@ impl Run<'_> {
         )
     }
 
-    /// A division by zero after which the program continues fails no test, and is told.
+    /// A division by zero after which the program continues fails no test, but is reported.
     fn tell_minor_faults(&self) -> Result<(), String> {
         let Some((note, object)) = self.suite.minor_faults() else { return Ok(()) };
         if self.session.common.format() == args::MessageFormat::Json {

@@ -20,7 +20,7 @@ const TURNS: u64 = 1_000_000;
 /// Runs the tests on every changed program, or on `budget` of them; the number that no test notices.
 pub fn run(session: &Session, args: &args::Test, tables: &[Table], threads: usize) -> Result<usize, String> {
     if !matches!(fate(session, args, tables, &session.sources)?, Fate::Survived) {
-        return Err("the tests need more turns of loops than changed programs get: give a --loop-budget".to_owned());
+        return Err("the tests need more turns of loops than changed programs get: set a --loop-budget".to_owned());
     }
     let all = staunch_frontend::mutants(&session.sources);
     let chosen = spread(&all, args.mutants.flatten().unwrap_or(all.len()));
@@ -116,7 +116,7 @@ fn shown(session: &Session, mutant: &Mutant) -> String {
             json_text(&after)
         ),
         MessageFormat::Human | MessageFormat::Short => {
-            format!("{}:{line}:{column}: no test notices\n  - {before}\n  + {after}\n", source.path)
+            format!("{}:{line}:{column}: no test detects\n  - {before}\n  + {after}\n", source.path)
         }
     }
 }

@@ -151,8 +151,8 @@ impl<'s> Report<'s> {
         let mock =
             if is_function { format!("`MOCK_FUNCTION {name} RETURNS value;`") } else { "`MOCK instance;`".to_owned() };
         let help = match is_table {
-            true => format!("the program calls `{name}`, which has no body here: a TEST may replace it, by {mock}"),
-            false => format!("the test calls `{name}`, which has no body here: replace it before that, by {mock}"),
+            true => format!("the program calls `{name}`, which has no body here: a TEST can replace it, with {mock}"),
+            false => format!("the test calls `{name}`, which has no body here: replace it first, with {mock}"),
         };
         (!name.is_empty()).then_some(help)
     }

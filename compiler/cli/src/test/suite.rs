@@ -96,7 +96,7 @@ fn outcome(ran: &Ran<'_>, test: &Test, pace: Pace, number: usize, told: usize) -
         failed(test, ran.values)?
     } else if is("__repeated")? {
         Outcome::Differs(vec![
-            "the suite begins a test of this title twice in one scan".to_owned(),
+            "the suite begins a test with this title twice in one scan".to_owned(),
             "assertions after the second TEST do not count: give it another title".to_owned(),
         ])
     } else if is("__done")? {
@@ -127,7 +127,7 @@ fn add_others(test: &Test, suite: &Suite, wants: &dyn Fn(&str) -> bool, ran: &Ra
     for (title, span) in suite.finished.iter().filter(|it| ran.fault.is_none() && wants(&in_full(test, &it.0))) {
         let title = in_full(test, title);
         if !cases.iter().any(|it| it.title == title) {
-            let why = "TEST_FINISHED_NAMED names it, and the suite never begins it";
+            let why = "TEST_FINISHED_NAMED names it, but the suite never begins it";
             cases.push(Case { title, span: *span, outcome: Outcome::Skipped(why.to_owned()) });
         }
     }

@@ -1,4 +1,4 @@
-//! A table is a test too: a CSV file beside a source, with inputs left of a `|` and what is expected right of it.
+//! A table is a test too: a CSV file next to a source, with inputs to the left of a `|` and expected values to the right.
 
 use super::coverage::Counts;
 use super::execute::Suite;
@@ -16,7 +16,7 @@ use std::process::Command;
 use std::sync::Mutex;
 use std::{fs, io};
 
-/// A table, and the source that it is beside.
+/// A table, and the source next to it.
 #[derive(Clone, Debug)]
 pub struct Table {
     pub path: PathBuf,
@@ -24,7 +24,7 @@ pub struct Table {
     file: u16,
 }
 
-/// The tables beside the sources: `pump.csv` is one of `pump.st` if its header has a `|`.
+/// The tables next to the sources: `pump.csv` is one of `pump.st` if its header has a `|`.
 pub fn tables(session: &Session) -> Result<Vec<Table>, String> {
     let mut tables = Vec::new();
     for (source, file) in session.sources.files().iter().zip(0..) {
@@ -50,7 +50,7 @@ fn subject(session: &Session, program: &Program, table: &Table) -> Result<Progra
         let is_known = session.project.program.is_some() || program.instances.len() < 2 || program.is_configured;
         if !is_known {
             let names: Vec<_> = program.instances.iter().map(|it| format!("`{}`", it.name)).collect();
-            let which = "no CONFIGURATION says which PROGRAMs run, and none is in the source that the table is beside";
+            let which = "no CONFIGURATION says which PROGRAMs run, and the source next to the table has none";
             return Err(format!("{which}: there are {}", names.join(", ")));
         }
         return session.choose(program, None);
@@ -73,7 +73,7 @@ fn idle(session: &Session, program: &Program, table: &Table) -> String {
         return String::new();
     }
     let source = &session.sources.get(table.file).path;
-    format!("\nno CONFIGURATION runs what {source} has: {}", own.join(", "))
+    format!("\nno CONFIGURATION runs a PROGRAM of {source}: {}", own.join(", "))
 }
 
 /// Runs a table; what is wrong with the file itself fails the test, too.

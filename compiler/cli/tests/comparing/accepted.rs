@@ -32,7 +32,7 @@ fn an_accepted_counter_does_not_accept_an_output() {
     assert!(text.contains("not compared after an accepted finding: c.Q, c.CV, d.Q, d.CV, motor."), "{text}");
 }
 
-/// What `--vars` names is compared until a line names it, and so is what lies at `%Q`; a variable inside follows.
+/// What `--vars` names is compared until a line names it, and so is a variable at `%Q`; a variable inside follows.
 #[test]
 fn what_is_named_and_what_is_wired_are_outputs() {
     let plain = MOTOR.replace("VAR_OUTPUT motor", "VAR motor");
@@ -66,14 +66,14 @@ fn accepted_findings_do_not_fail() {
     let output = run(&format!("held.st --from iec --to cscape --accept {}", stale.display()));
     assert_eq!(output.status.code(), Some(0));
     let said = text(&output.stderr);
-    assert!(said.contains("stale.txt:3: trap 4 of `parts` is accepted, and is impossible: "), "{said}");
+    assert!(said.contains("stale.txt:3: trap 4 of `parts` is accepted, but is impossible: "), "{said}");
     let one = written("one.txt", "parts 2: nobody reads the count\n");
     let some = difference(&format!("held.st --from iec --to cscape --accept {}", one.display()));
     assert!(some.contains("\nNot accepted: `parts 1`.\n"), "{some}");
     assert!(!out.contains("Not accepted"), "{out}");
 }
 
-/// Only what is accepted passes: the search goes on beyond it, and compares what does not follow from it.
+/// Only what is accepted passes: the search continues past it, and compares what does not follow from it.
 #[test]
 fn what_is_not_accepted_fails() {
     let accept = |name: &str, lines: &str| {
@@ -106,10 +106,10 @@ c(s, FALSE, 3); y := CONCAT(y, 'aaaaaaaaaa'); q := LEN(y) > 90;",
     let against = ["--accept", &known, "--against", &other];
     let (code, text) = moved(&one, "iec", "cscape", &against);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("Beyond it, and what follows from it, the two are equal"), "{text}");
+    assert!(text.contains("Apart from it and its consequences, the two are equal"), "{text}");
 }
 
-/// What is not found is not ruled out, whatever is accepted.
+/// "Not found" rules nothing out, whatever is accepted.
 #[test]
 fn nothing_found_is_not_accepted() {
     let path = OWN.program(
@@ -139,7 +139,7 @@ fn what_is_declared_with_what_is_accepted_is_not() {
     let arguments = ["--accept", &accept.display().to_string()];
     let (code, text) = moved(&path, "iec", "openplc", &arguments);
     assert_eq!(code, Some(4), "{text}");
-    assert!(text.contains("what c[2] decides, which is declared with what is accepted"), "{text}");
+    assert!(text.contains("the effect of c[2], declared together with an accepted difference"), "{text}");
     std::fs::write(&accept, "* 15: nobody reads it\nover output: it is not wired\nalarm output: nor is this\n")
         .expect("a file");
     let (code, text) = moved(&path, "iec", "openplc", &arguments);

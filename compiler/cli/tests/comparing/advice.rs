@@ -1,4 +1,4 @@
-//! The advice of `staunch compare`, proved by running it: the program as it is parts from itself by the
+//! The advice of `staunch compare`, proved by running it: the program as it is differs from itself by the
 //! trap on the other system, and the program changed as advised is equal to the original.
 
 use super::programs::{self, Folder};
@@ -53,7 +53,7 @@ impl Taken {
             let named = text.lines().any(|it| it.starts_with(&format!("Trap {} ", self.trap)));
             let seen = |it: &str| it.contains("reachable") && it.contains(&format!(": trap {}. ", self.trap));
             assert!(named || text.lines().any(seen), "{name}: {text}");
-            assert!(!text.contains("No way of writing it is proved"), "{name}: {text}");
+            assert!(!text.contains("No rewrite has been proved"), "{name}: {text}");
         }
         equal(&name, from, to, self.vars, [&original, &advised]);
     }
@@ -73,7 +73,7 @@ const RISING: &str = "VAR_INPUT sensor, clear : BOOL; END_VAR VAR full, over : B
 
 fn scratch() -> PathBuf {
     let folder = Folder("advice").path();
-    // What is left open is decided: the advice is for a CTU of CODESYS and Siemens that goes on past its preset, a CTD of S7
+    // What is left open is decided: the advice is for a CTU of CODESYS and Siemens that counts past its preset, a CTD of S7
     // that loads while LD is TRUE, and an Editor of OpenPLC that counts CD as it falls.
     static DECIDED: std::sync::Once = std::sync::Once::new();
     DECIDED.call_once(|| {
@@ -214,7 +214,7 @@ fn a_count_that_is_retained_as_advised_survives_a_restart() {
     equal("11", "iec", "cscape", "full", [&original, &advised]);
 }
 
-/// Trap 11 between IEC and CODESYS: what is RETAIN on both is kept over STOP -> RUN and a power cycle alike.
+/// Trap 11 between IEC and CODESYS: what is RETAIN on both is kept through both STOP -> RUN and a power cycle.
 #[test]
 fn what_is_retained_as_advised_survives_stop_to_run() {
     let text = |section: &str, pin: &str| {

@@ -1,4 +1,4 @@
-//! What a move changes beside counters, planted one kind a program: `staunch compare` lists it at the user's own
+//! What a move changes other than counters, planted one kind a program: `staunch compare` lists it at the user's own
 //! line, with the scans that show it.
 
 use super::programs::{self, Folder, moved};
@@ -106,7 +106,7 @@ END_IF",
         trap: None,
         scans: 1,
     },
-    // What is at `%QX` is no part of what is at `%QW` on OPENPLC.
+    // On OPENPLC, `%QX` is not part of `%QW`.
     Planted {
         name: "address",
         from: "iec",
@@ -207,7 +207,8 @@ big := n + k; wide := big > 40000;";
         for shown in ["hit", "c.Q", "b"] {
             let (code, text) = moved(&path, from, to, &["--vars", shown]);
             assert_eq!(code, Some(1), "{text}");
-            let reason = format!("`{shown}` follows from `both` (address, {}:4): bits at an address are", path);
+            let reason =
+                format!("`{shown}` follows from `both` (address, {}:4): only one of the two systems shares", path);
             assert!(text.contains(&reason) && !text.contains("(variable, "), "{text}");
         }
     }
@@ -224,7 +225,7 @@ fn what_does_not_differ_is_not_found() {
     std::fs::write(&accept, "c 2: nobody reads the count past its preset\nc 1: it is fed edges\n").expect("a file");
     let (code, text) = moved(&path, "iec", "cscape", &["--accept", &accept.display().to_string()]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("`late` (timer, ") && text.contains("what the block is given differs"), "{text}");
+    assert!(text.contains("`late` (timer, ") && text.contains("the inputs of the block differ"), "{text}");
     let path = OWN.program(
         "alike",
         "VAR_INPUT a : BOOL; END_VAR VAR t : TON; n : BOOL; END_VAR\nt(IN := a, PT := T#30ms); n := t.Q;",
@@ -278,7 +279,7 @@ fn an_assumption_is_of_times_that_both_systems_have() {
     }
 }
 
-/// A guard behind an edge, as trap 14's advice has it, makes no edge: it is another program.
+/// A guard after an edge, as trap 14 advises, makes no edge: it is another program.
 #[test]
 fn a_guard_that_makes_no_edge_is_no_trap() {
     let text = |guard: &str| {
@@ -315,8 +316,11 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     );
     let (code, text) = moved(&path, "codesys", "logix", &[]);
     assert_eq!(code, Some(1), "{text}");
-    for line in ["LOGIX has no TON (`t`)", "LOGIX has no SR (`latch`): there it is SETD", "LOGIX has no WORD (`mask`)"]
-    {
+    for line in [
+        "LOGIX does not have TON (`t`)",
+        "LOGIX does not have SR (`latch`): use SETD",
+        "LOGIX does not have WORD (`mask`)",
+    ] {
         assert!(text.contains(&format!("{}:3: {line}", path)), "{line}\n{text}");
     }
     let (_, json) = moved(&path, "codesys", "logix", &["--message-format", "json"]);
@@ -328,7 +332,7 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     );
     let (code, text) = moved(&wide, "iec", "openplc", &[]);
     assert_eq!(code, Some(1), "{text}");
-    assert!(text.contains("OPENPLC has no LTIME (`t`): there it is TIME"), "{text}");
+    assert!(text.contains("OPENPLC does not have LTIME (`t`): use TIME"), "{text}");
     assert!(text.contains("OPENPLC has no WSTRING (`w`)"), "{text}");
     let (_, text) = moved(&wide, "iec", "cscape", &[]);
     assert!(

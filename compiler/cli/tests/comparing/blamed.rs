@@ -93,7 +93,7 @@ END_PROGRAM
 ";
     let (code, text) = OWN.compare("another_preset", source, &["--from", "openplc", "--to", "iec"]);
     assert_eq!(code, Some(1), "{text}");
-    assert!(text.contains("what the block is given differs") && !text.contains("trap 19"), "{text}");
+    assert!(text.contains("the inputs of the block differ") && !text.contains("trap 19"), "{text}");
     let same = source.replace("DINT_TO_TIME(ms)", "T#0s");
     let (code, text) = OWN.compare("same_preset", &same, &["--from", "openplc", "--to", "iec"]);
     assert_eq!(code, Some(1), "{text}");
@@ -116,7 +116,7 @@ END_PROGRAM
     let (code, text) =
         OWN.compare("timer", source, &["--from", "iec", "--to", "openplc", "--vars", "o", "--accept", &accepted]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("what the block is given differs") && !text.contains("trap 19"), "{text}");
+    assert!(text.contains("the inputs of the block differ") && !text.contains("trap 19"), "{text}");
 }
 
 /// What is one program on both systems is never said to be two: a counter below 0 in one of its calls, a division by zero,
@@ -144,8 +144,8 @@ END_PROGRAM
         ("calls", calls, "o", "openplc", "Trap 15 (`c`)"),
         ("calls", calls, "o", "codesys", "Trap 3 (`c`)"),
         ("division", division, "y", "logix", "a division by zero ("),
-        ("enable", ENABLED, "off", "siemens", "`En` stops the body of `Pump` on iec alone"),
-        ("enable", ENABLED, "off", "codesys", "`En` stops the body of `Pump` on iec alone"),
+        ("enable", ENABLED, "off", "siemens", "`En` stops the body of `Pump` only on iec"),
+        ("enable", ENABLED, "off", "codesys", "`En` stops the body of `Pump` only on iec"),
     ] {
         let arguments = ["--from", "iec", "--to", to, "--vars", vars, "--assume", &none];
         let (code, text) = OWN.compare(&format!("one_{name}_{to}"), source, &arguments);
@@ -154,7 +154,7 @@ END_PROGRAM
     }
 }
 
-/// DN of a CTD that is put in place of a block is asked for by nothing, and is no reason.
+/// Nothing reads DN of a CTD that replaces a block, so it is not a reason.
 #[test]
 fn what_the_port_does_not_read_is_no_reason() {
     let below = "PROGRAM p

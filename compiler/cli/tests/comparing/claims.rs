@@ -43,7 +43,7 @@ fn a_table_that_is_only_read_is_no_input() {
     let assumed = OWN.written("assumed.txt", "t[0] 0..10\n");
     let (code, text) = OWN.compare("assumed", &source, &[&TO_OPENPLC[..], &["--assume", &assumed]].concat());
     assert_eq!(code, Some(1), "{text}");
-    // What is RETAIN, or has an address, is there for the world outside to write.
+    // A variable that is RETAIN, or has an address, can be written from outside.
     for declared in ["VAR RETAIN t : ARRAY[0..1] OF INT; END_VAR", "VAR t AT %MW0 : ARRAY[0..1] OF INT; END_VAR"] {
         let (code, text) = OWN.compare("from_outside", &table(declared, "t[0] = 7"), &TO_OPENPLC);
         assert_eq!(code, Some(1), "{text}");
@@ -85,14 +85,14 @@ END_PROGRAM
         let arguments = ["--from", from, "--to", to, "--assume", no_run.as_str()];
         let (code, text) = OWN.compare("time", source, &arguments);
         assert_eq!(code, Some(4), "{text}");
-        assert!(text.contains("DT of CODESYS, which is not followed here and is used in line 4"), "{text}");
+        assert!(text.contains("DT of CODESYS, which Staunch does not follow and line 4 uses"), "{text}");
         let compared = source.replace("a + T#1s", "a");
         let (code, text) = OWN.compare("compared", &compared, &arguments);
         assert_eq!(code, Some(0), "{text}");
     }
 }
 
-/// A TIME of CODESYS has 32 bits of milliseconds without a sign, so that `T#1s - T#2s` is no negative time; and no input is
+/// A TIME of CODESYS has 32 bits of milliseconds without a sign, so that `T#1s - T#2s` is not negative; and no input is
 /// tried that it does not have.
 #[test]
 fn a_time_of_codesys_has_no_sign() {
@@ -127,7 +127,7 @@ END_PROGRAM
 ";
     let (code, text) = OWN.compare("unsigned_ltime", source, &arguments);
     assert_eq!(code, Some(1), "{text}");
-    // It is no counter, whose count the advice would keep within limits.
+    // It is not a counter, whose count the advice would keep within limits.
     assert!(!text.contains("Trap 8"), "{text}");
     let (code, text) = OWN.compare("equal_ltime", &source.replace("a - LTIME#1s", "a"), &arguments);
     assert_eq!(code, Some(0), "{text}");
@@ -152,7 +152,7 @@ END_PROGRAM
     let (code, text) = OWN.compare("past_run", &source(2), &arguments);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("Trap 11"), "{text}");
-    let next = text.lines().find(|it| it.starts_with("Where nobody switches it to STOP (`no run`")).unwrap_or_default();
+    let next = text.lines().find(|it| it.starts_with("If nobody switches it to STOP (`no run`")).unwrap_or_default();
     assert!(next.contains("the two differ after 5 scans") && next.contains("Trap 15 (`c`)"), "{text}");
     let (_, text) = OWN.compare("past_run_equal", &source(9), &arguments);
     assert!(text.contains("the two are equal: every reachable state was seen."), "{text}");
@@ -222,7 +222,7 @@ END_PROGRAM
         let (code, text) =
             OWN.compare("subrange", source, &["--from", from, "--to", to, "--vars", "o", "--assume", &assumed]);
         assert_eq!(code, Some(1), "{text}");
-        assert!(text.contains("one system faults here, and the other goes on"), "{text}");
+        assert!(text.contains("one system faults here, and the other continues"), "{text}");
     }
     let (code, text) =
         OWN.compare("subrange", source, &["--from", "iec", "--to", "cscape", "--vars", "o", "--assume", &assumed]);

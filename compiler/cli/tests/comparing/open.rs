@@ -45,7 +45,7 @@ fn what_a_vendor_leaves_open_is_tried_both_ways() {
     assert!(json.contains(settings), "{json}");
 }
 
-/// CODESYS keeps the count over STOP -> RUN whatever CTU does at its preset; without that, only the CTU that goes on parts
+/// CODESYS keeps the count over STOP -> RUN whatever CTU does at its preset; without that, only the CTU that counts further differs
 /// from OPENPLC, which stops there.
 #[test]
 fn each_setting_says_what_differs_without_stop_to_run() {
@@ -60,7 +60,7 @@ END_PROGRAM
     assert_eq!(code, Some(1), "{text}");
     let other = "With `ctu-stop-at-pv = true`, the two differ after 2 scans; without STOP -> RUN, the two are equal.";
     assert!(text.contains(other), "{text}");
-    let shown = "The advice is right with `ctu-stop-at-pv = false`; with other settings it may not be.";
+    let shown = "The advice is valid with `ctu-stop-at-pv = false`, but perhaps not with other settings.";
     assert!(text.contains("the two differ after 7 scans") && text.contains(shown), "{text}");
     let (_, json) = OWN.compare("open_run_json", source, &[&arguments[..], &["--message-format", "json"]].concat());
     assert!(json.contains("\"verdict\":\"different\",\"without_run\":\"equal\"}]"), "{json}");
@@ -105,7 +105,7 @@ END_PROGRAM
             let (found, text) = OWN.compare(name, &source(condition), &["--from", from, "--to", to, "--vars", "k"]);
             assert_eq!(found, Some(code), "{text}");
             assert_eq!(
-                text.contains("a comparison of TIMEs of OPENPLC, which is not followed here"),
+                text.contains("a comparison of TIMEs of OPENPLC, which Staunch does not follow"),
                 code == 4,
                 "{text}"
             );
@@ -113,7 +113,7 @@ END_PROGRAM
     }
 }
 
-/// What documents leave open is said with a verdict that nothing differs.
+/// A verdict that nothing differs names what the documents do not specify.
 #[test]
 fn values_that_a_vendor_leaves_open_are_named() {
     let source = "PROGRAM p
@@ -128,13 +128,16 @@ END_PROGRAM
     let arguments = ["--from", "codesys", "--to", "iec", "--assume", &no_run];
     let (code, text) = OWN.compare("left_open", source, &arguments);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("The documents of CODESYS leave open `MOD` of a negative number (line 5)"), "{text}");
-    assert!(text.contains("leave open a number with a fraction beside a REAL (line 6): here a REAL"), "{text}");
+    assert!(text.contains("The documents of CODESYS do not specify `MOD` of a negative number (line 5)"), "{text}");
+    assert!(
+        text.contains("do not specify a number with a fraction in an operation with a REAL (line 6); Staunch: a REAL"),
+        "{text}"
+    );
     let (_, json) = OWN.compare("left_open", source, &[&arguments[..], &["--message-format", "json"]].concat());
-    assert!(json.contains("\"open\":[\"The documents of CODESYS leave open `MOD`"), "{json}");
+    assert!(json.contains("\"open\":[\"The documents of CODESYS do not specify `MOD`"), "{json}");
     let exact = source.replace("0.1", "0.5").replace("MOD", "*");
     let (_, text) = OWN.compare("nothing_open", &exact, &arguments);
-    assert!(!text.contains("leave open"), "{text}");
+    assert!(!text.contains("do not specify"), "{text}");
 }
 
 /// Between a system with nanoseconds and one with milliseconds, an input has what both have, and the verdict says so.

@@ -74,7 +74,7 @@ impl Case {
     }
 
     fn inputs(&self) -> String {
-        // What is negative is no preset of a WORD.
+        // A negative number is not a preset of a WORD.
         INPUTS.replace("{range}", if self.from.dialect == "codesys" { "0..2" } else { "-1..2" })
     }
 

@@ -23,7 +23,7 @@ fn program(declared: &str, body: &str) -> String {
     )
 }
 
-/// Edges that fit into so many scans, beside the first.
+/// Edges that fit into so many scans, after the first.
 fn edges(depth: usize) -> usize {
     depth.saturating_sub(1) / 2
 }

@@ -65,8 +65,8 @@ END_PROGRAM
     assert!(text.contains("+ c.PRE := 3; CTU(c, x);") && text.contains("codesys and logix differ after"), "{text}");
 }
 
-/// Reset wins over the load on IEC, OPENPLC, CODESYS and S7; the port loads after CTUD, which has reset before it. What it
-/// resets and loads it may read the counter itself, as it was before the call.
+/// Reset wins over the load on IEC, OPENPLC, CODESYS and S7; the port loads after CTUD, which has reset before it. A program that it
+/// resets and loads may read the counter itself, as it was before the call.
 #[test]
 fn the_port_of_a_ctud_lets_reset_win_over_load() {
     let none = OWN.written("no_event.txt", NO_EVENT);

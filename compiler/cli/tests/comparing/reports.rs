@@ -60,7 +60,7 @@ fn a_preset_that_the_program_chooses_is_one_of_a_few() {
     let path = program("recipe", declared, body);
     let (code, text) = compare(&path, ["siemens", "iec"], &[]);
     assert_eq!(code, Some(0), "{text}");
-    assert!(text.contains("counts past all that they are compared with taken as one"), "{text}");
+    assert!(text.contains("all counts past the values that they are compared with taken as one state"), "{text}");
     let path = program("recipe_grows", declared, &body.replace("3: chosen := 20", "3: chosen := chosen + 1"));
     let (code, text) = compare(&path, ["siemens", "iec"], &["--budget", "20000"]);
     assert_eq!(code, Some(4), "{text}");
@@ -85,10 +85,10 @@ fn all_combinations_of_many_inputs_are_tried() {
     let path = program("fifteen", &more, &body("c.Q"));
     let (code, text) = compare(&path, ["iec", "openplc"], &["--vars", "o"]);
     assert_eq!(code, Some(4), "{text}");
-    assert!(text.contains("combinations of inputs other than the 16384 that change few of them"), "{text}");
+    assert!(text.contains("combinations of inputs other than the 16384 in which few of them change"), "{text}");
 }
 
-/// 1756-RM003, "CTU": a count past 2,147,483,647 goes on at -2,147,483,648. No budget leads there.
+/// 1756-RM003, "CTU": a count past 2,147,483,647 continues at -2,147,483,648. No budget reaches that.
 #[test]
 fn a_count_of_logix_that_nothing_resets_is_said_to_go_on() {
     let declared = format!("{PULSES} VAR RETAIN c : CTU; e : R_TRIG; END_VAR");
@@ -100,7 +100,7 @@ fn a_count_of_logix_that_nothing_resets_is_said_to_go_on() {
     let (code, text) = compare(&ours, ["iec", "logix"], &arguments);
     assert_eq!(code, Some(4), "{text}");
     assert!(
-        text.contains("the whole count of `c`, which nothing resets: ACC of Logix goes on past 2147483647"),
+        text.contains("the whole count of `c`, which nothing resets: ACC of Logix wraps after 2147483647"),
         "{text}"
     );
     let theirs = program("reset_logix", &declared, &format!("{EDGE} {call} RES(c, FALSE AND s OR c.ACC > 3);"));
@@ -126,7 +126,7 @@ fn a_flag_that_nothing_reads_shows_nothing() {
     assert_eq!(code, Some(0), "{text}");
     assert!(!text.contains("reachable after") && !text.contains("undecided"), "{text}");
     assert!(text.contains("impossible: trap 13: nothing reads its DN"), "{text}");
-    assert!(text.contains("impossible: trap 4: nothing reads its DN, or loads it"), "{text}");
+    assert!(text.contains("impossible: trap 4: nothing reads its DN or loads it"), "{text}");
     // One that is read, before ACC is loaded, does.
     let theirs = program("read_logix", declared, &format!("{call} o := c.DN AND d.ACC <= 0;"));
     let arguments = ["--against", &theirs, "--vars", "o", "--assume", &calm];
@@ -145,12 +145,12 @@ fn what_is_not_compared_is_named() {
     let (code, text) = compare(&ours, ["iec", "openplc"], &["--against", &theirs, "--vars", "o"]);
     assert_eq!(code, Some(0), "{text}");
     assert!(
-        text.contains("not compared, since one program alone has it: aa, bb, cc, dd, ee, ff, gg, t[0] to t[9]"),
+        text.contains("not compared, since only one program has it: aa, bb, cc, dd, ee, ff, gg, t[0] to t[9]"),
         "{text}"
     );
 }
 
-/// With CTU that stops, the count is past PV on the other system after 3 scans; with one that goes on, the two differ in
+/// With CTU that stops, the count is past PV on the other system after 3 scans; with one that counts further, the two differ in
 /// the rising edge of the guard alone.
 #[test]
 fn the_shortest_is_so_by_one_setting() {
@@ -165,7 +165,7 @@ fn the_shortest_is_so_by_one_setting() {
     let (code, text) = compare(&ours, ["codesys", "iec"], &arguments);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("codesys and iec differ after 5 scans"), "{text}");
-    assert!(text.contains("makes a difference with these settings; with others, one does"), "{text}");
+    assert!(text.contains("shows a difference with these settings; with others, one does"), "{text}");
     assert!(text.contains("With `ctu-stop-at-pv = true`, the two differ after 3 scans."), "{text}");
 }
 
@@ -178,7 +178,7 @@ fn a_ctu_of_codesys_that_stops_is_trap_2() {
     let (code, text) = compare(&path, ["codesys", "iec"], &["--vars", "o", "--assume", &calm]);
     assert_eq!(code, Some(1), "{text}");
     let sentence = "Trap 2 (`c`): Past PV: the count of CSCAPE stays at PV, and so does that of a CTU of CODESYS and TwinCAT \
-        with `ctu-stop-at-pv = true`; the others go on. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.";
+        with `ctu-stop-at-pv = true`; the others continue to count. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.";
     assert!(text.contains(sentence), "{text}");
     assert!(text.contains("ELSIF edge AND n < preset THEN n := n + 1; END_IF; full := n >= preset;"), "{text}");
 }

@@ -38,7 +38,10 @@ fn differs(name: &str, programs: [&str; 2], dialect: &str, vars: &str, scans: us
 fn equal(name: &str, programs: [&str; 2], systems: [&str; 2], vars: &str) {
     let (code, text) = compare(name, programs, systems, vars);
     assert_eq!(code, Some(0), "{name}: {text}");
-    assert!(text.contains(", counts past all that they are compared with taken as one, "), "{name}: {text}");
+    assert!(
+        text.contains(", with all counts past the values that they are compared with taken as one state, "),
+        "{name}: {text}"
+    );
 }
 
 /// Counters that nothing resets reach 65,535 each; where no program asks for more than whether a few were counted, few
@@ -198,7 +201,7 @@ fn a_difference_that_the_limit_hides_is_not_claimed() {
     assert_eq!(code, Some(4), "{text}");
 }
 
-/// What the world outside writes to a counter's pins is no constant.
+/// A value written from outside to a counter's pins is not a constant.
 #[test]
 fn a_counter_that_is_an_input_counts() {
     let of = |z: &str| {

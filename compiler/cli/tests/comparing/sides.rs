@@ -36,7 +36,7 @@ fn what_is_not_found_is_not_ruled_out() {
     let out = text(&output.stdout);
     assert_eq!(output.status.code(), Some(4), "{out}");
     assert!(
-        out.starts_with("No difference between iec and codesys was found, and none is ruled out.\nTried: "),
+        out.starts_with("No difference between iec and codesys was found, but none is ruled out.\nTried: "),
         "{out}"
     );
     assert!(out.contains("Not tried: longer sequences; a larger --budget tries more of them.\n"), "{out}");
@@ -61,14 +61,18 @@ fn a_system_has_the_name_that_it_is_asked_for_by() {
 fn a_program_is_not_compared_with_itself() {
     for (from, to, why) in [
         ("iec", "iec", "--from and --to are both `iec`: the program would be compared with itself"),
-        ("twincat", "codesys", "`twincat` and `codesys` are one system: the program would be compared with itself"),
+        (
+            "twincat",
+            "codesys",
+            "`twincat` and `codesys` are the same system: the program would be compared with itself",
+        ),
         ("iec", "iec --against held.st", "--against is the program itself"),
     ] {
         let output = run(&format!("held.st --from {from} --to {to}"));
         assert_eq!(output.status.code(), Some(2), "{from} {to}");
         assert!(text(&output.stderr).contains(why), "{}", text(&output.stderr));
     }
-    let source = std::fs::read_to_string(folder().join("held.st")).expect("it is there");
+    let source = std::fs::read_to_string(folder().join("held.st")).expect("it exists");
     let copy = written("held_copy.st", &source);
     let output = run(&format!("held.st --from iec --to iec --against {}", copy.display()));
     assert_eq!(output.status.code(), Some(0));
@@ -82,14 +86,14 @@ fn a_file_or_a_name_that_fixes_its_system_is_not_compared_with_itself() {
         written("fixed.st", "{dialect 'codesys'}\nPROGRAM p\nVAR x : BOOL; END_VAR\nx := TRUE;\nEND_PROGRAM\n");
     let output = run(&format!("{} --from iec --to cscape", pragma.display()));
     assert_eq!(output.status.code(), Some(2));
-    assert!(text(&output.stderr).contains("fixed.st:1: the file is of the dialect `codesys`, and --from says `iec`"));
+    assert!(text(&output.stderr).contains("fixed.st:1: the dialect of the file is `codesys`, but --from says `iec`"));
     let name = written(
         "qualified.st",
         "PROGRAM p\nVAR c : ARRAY[1..2] OF CODESYS.CTU; END_VAR\nc[1](CU := TRUE);\nEND_PROGRAM\n",
     );
     let output = run(&format!("{} --from codesys --to iec", name.display()));
     assert_eq!(output.status.code(), Some(2), "{}", text(&output.stdout));
-    assert!(text(&output.stderr).contains("qualified.st:2: `CODESYS.CTU` is CODESYS's on every system"));
+    assert!(text(&output.stderr).contains("qualified.st:2: `CODESYS.CTU` belongs to CODESYS on every system"));
 }
 
 #[test]
@@ -123,8 +127,8 @@ fn what_the_other_system_has_not_is_said_at_its_declaration() {
          tick(IN := run AND NOT tick.Q, PT := T#300ms);\nc(CU := tick.Q, R := FALSE, PV := 60);\nEND_PROGRAM\n",
     );
     let out = difference(&format!("{} --from iec --to logix", path.display()));
-    assert!(out.contains("hours.st:3: LOGIX has no TON (`tick`): there it is TONR with an FBD_TIMER"), "{out}");
-    // Logix keeps every tag over a power cycle, so that the timer goes on there.
+    assert!(out.contains("hours.st:3: LOGIX does not have TON (`tick`): use TONR with an FBD_TIMER there"), "{out}");
+    // Logix keeps every tag over a power cycle, so that the timer continues there.
     assert!(out.contains("iec and logix differ after 2 scans:") && out.contains("Trap 11: Restart"), "{out}");
 }
 
@@ -192,18 +196,18 @@ fn what_is_compared_is_there_on_both_sides() {
     };
     let arguments = format!("{} --from iec --to codesys", both.display());
     fails(format!("{arguments} --vars full,alrm"), "--vars: there is no variable `alrm`");
-    fails(format!("{arguments} --vars s"), "--vars names nothing but inputs");
-    fails(format!("{arguments} --vars c.PV"), "--vars: `c.PV` is a CONSTANT, or an input of a block");
+    fails(format!("{arguments} --vars s"), "--vars names only inputs");
+    fails(format!("{arguments} --vars c.PV"), "--vars: `c.PV` is a CONSTANT or an input of a block");
     let against = |path: &Path| format!("{arguments} --against {}", path.display());
     fails(format!("{} --vars full,alarm", against(&one)), "only one of the two programs has a variable `alarm`");
-    fails(against(&one), "`alarm` is an output of the first program alone");
-    fails(against(&other), "is an output of the first program alone");
+    fails(against(&one), "only the first program has the output `alarm`");
+    fails(against(&other), "only the first program has the output");
     // A name may begin with the PROGRAM, as it may for a run; what one program alone has otherwise is said.
     let output = run(&format!("{} --vars p.full,c.CV", against(&one)));
     assert_ne!(output.status.code(), Some(2), "{}", text(&output.stderr));
     let output = run(&format!("{} --assume no_run.txt --vars full", against(&more)));
     assert!(
-        text(&output.stdout).contains("not compared, since one program alone has it: n"),
+        text(&output.stdout).contains("not compared, since only one program has it: n"),
         "{}",
         text(&output.stdout)
     );

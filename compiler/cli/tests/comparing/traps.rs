@@ -49,7 +49,7 @@ fn an_input_is_held_for_as_long_as_it_takes() {
     }
 }
 
-/// What nothing calls has no trap, seen or not; what is called by a reference or a parameter is no such thing.
+/// A counter that nothing calls has no trap, seen or not; one that is called through a reference or a parameter has.
 #[test]
 fn a_counter_that_is_never_called_says_so() {
     let path = written(
@@ -94,7 +94,7 @@ fn the_shortest_trace_is_a_table() {
          \x20 scan  sensor  parts.CV iec  parts.CV cscape\n\
          \x20    1    TRUE             1                1\n\
          \x20    2    TRUE             1                2 ◀\n\
-         \x20 no shorter sequence of these inputs makes a difference\n\
+         \x20 no shorter sequence of these inputs shows a difference\n\
          \n\
          Trap 1 (`parts`): CU held TRUE counts once everywhere except CSCAPE, where it counts every call.\n\
          What to do: Feed the counter from an R_TRIG: `e(CLK := sensor); c(CU := e.Q, …)`.\n";
@@ -193,7 +193,7 @@ fn what_only_stop_to_run_keeps_is_found() {
     let wrong = written("no_such_event.txt", "no rain\n");
     let output = run(&format!("{arguments} --assume {}", wrong.display()));
     assert!(
-        text(&output.stderr).contains(":1: `rain` is no event; they are restart, run, reset"),
+        text(&output.stderr).contains(":1: `rain` is not an event; expected restart, run or reset"),
         "{}",
         text(&output.stderr)
     );

@@ -131,7 +131,7 @@ fn what_the_world_outside_writes_is_told_apart_by_variable() {
     let programs = [
         // Of two panels the program writes one.
         ("members", panel, "", "IF s THEN one.start := FALSE; END_IF", "c(s AND two.start, FALSE, 1); o := c.CV > 1;"),
-        // What is written as a whole is no input.
+        // A variable that is written as a whole is not an input.
         ("whole", recipe, "rec : Recipe;", "", "o := cur.on; c(s, c.CV > 1, 1); IF c.CV > 1 THEN cur := rec; END_IF"),
     ];
     for (name, types, input, first, last) in programs {
@@ -157,7 +157,7 @@ fn what_the_world_outside_writes_is_told_apart_by_variable() {
     let arguments = format!("{} --from iec --to openplc --vars o -A warnings", path.display());
     let out = text(&run(&arguments).stdout);
     assert!(
-        out.contains("under every value of the inputs (s); nothing else is taken to be written from outside"),
+        out.contains("under every value of the inputs (s); it is assumed that nothing else is written from outside"),
         "{out}"
     );
     let assumed = written("outside.txt", "input reset\n");
@@ -194,7 +194,7 @@ fn what_keeps_its_value_is_said_and_an_assumption_makes_it_an_input() {
     let output = run(&arguments);
     let out = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{out}");
-    assert!(out.contains("nothing writes n (5), and the initial value was all that was tried"), "{out}");
+    assert!(out.contains("nothing writes n (5), so only the initial value was tried"), "{out}");
     let free = written("free.txt", "n 1..4   # the panel's\n");
     let out = difference(&format!("{arguments} --assume {}", free.display()));
     assert!(out.starts_with("iec and openplc differ after 3 scans:"), "{out}");

@@ -1,4 +1,4 @@
-//! Values that are no numbers: texts as inputs, references, and instances that a PROGRAM is given.
+//! Values that are not numbers: strings as inputs, references, and instances that a PROGRAM is given.
 
 use super::programs::{self, Folder};
 
@@ -115,9 +115,9 @@ fn texts_that_are_compared_alone_are_covered() {
     let (code, text) = with("parts.st", "LEFT(code, 2) = 'ST'", "not part\n", ("iec", "cscape"));
     assert!(code == Some(4) && text.contains("values of code other than the"), "{text}");
     let (code, text) = with("unknown.st", "code = 'START'", "code = 'STOP'\n", ("iec", "cscape"));
-    assert!(code == Some(2) && text.contains("it is not tried with 'STOP', but with"), "{text}");
+    assert!(code == Some(2) && text.contains("the search does not try 'STOP', but only"), "{text}");
     let (_, text) = with("order.st", "code = 'START'", "code < 'START'\n", ("iec", "cscape"));
-    assert!(text.contains("`code` is a string: it is compared by `=` and `<>`"), "{text}");
+    assert!(text.contains("`code` is a string: compare it with `=` or `<>`"), "{text}");
     let (_, text) = with("range.st", "code = 'START'", "code 'A'..'B'\n", ("iec", "cscape"));
     assert!(text.contains("`code` is a string, which has no range"), "{text}");
     let (_, text) = with("open.st", "code = 'START'", "code = 'START\n", ("iec", "cscape"));
@@ -188,7 +188,7 @@ fn a_reference_as_input_is_not_tried() {
     let (code, text) =
         compare(&OWN.written("given.st", text), ("codesys", "iec"), &["--assume", &OWN.written("r.txt", "no run\n")]);
     assert!(
-        code == Some(4) && text.contains("inputs that are references, or of another type on the other system: lead"),
+        code == Some(4) && text.contains("inputs that are references, or have another type on the other system: lead"),
         "{text}"
     );
 }
@@ -243,7 +243,7 @@ fn texts_that_stand_for_others_are_not_assumed_away() {
     let source = order("stand_in.st", "VAR_INPUT code : STRING[8]; END_VAR", "code <> 'STOP' AND code <> ''");
     let assumed = OWN.written("stand_in.txt", "code <> 'a'\ncode <> 'xxxxxxxx'\n");
     let (code, text) = compare(&source, ("iec", "openplc"), &["--assume", &assumed]);
-    assert!(code == Some(2) && text.contains("it is not tried with 'a', but with"), "{text}");
+    assert!(code == Some(2) && text.contains("the search does not try 'a', but only"), "{text}");
 }
 
 /// A standard block that is an input is given what its input pins take; what else might be written to it is not ruled out.

@@ -131,7 +131,7 @@ fn fixtures_are_no_part_of_the_program() {
     assert_eq!(folder.staunch("build counter.st --emit rust -o out.rs").code, 0);
     let emitted = folder.read("out.rs");
     assert!(!emitted.contains("CounterTest") && emitted.contains("Counter"), "{emitted}");
-    // What is wrong in them is said all the same.
+    // Mistakes in them are reported anyway.
     folder.write("counter.st", FIXTURE.replace("Equal(0, c.Count());", "Equal(0, c.Total());"));
     let checked = folder.staunch("check counter.st");
     assert_eq!(checked.code, 1);

@@ -87,7 +87,7 @@ fn an_executable_runs_until_it_is_stopped() {
     assert_eq!(ran.code, 0);
 }
 
-/// A scan that would go on for hours: Ctrl-C ends it all the same.
+/// A scan that would take hours: Ctrl-C still ends it.
 #[test]
 #[cfg(unix)]
 fn an_interrupt_ends_a_scan_that_does_not_end() {
@@ -124,7 +124,7 @@ fn an_interrupt_ends_a_scan_that_does_not_end() {
             }
             if asked.elapsed() > Duration::from_secs(20) {
                 child.kill().unwrap();
-                panic!("{name} goes on");
+                panic!("{name} does not end");
             }
             std::thread::sleep(Duration::from_millis(50));
         };
@@ -142,7 +142,7 @@ fn what_cannot_be_built_is_refused_with_the_way_to_go() {
     has(&folder.staunch("run fb.st").err(2), &["PROGRAM"]);
 }
 
-/// A project in a folder of the machine's: what it makes does not tell where it lies.
+/// A project in a folder of the machine's: its output does not show where the folder is.
 #[test]
 fn two_folders_make_the_same_bytes() {
     let project = |name: &str| {

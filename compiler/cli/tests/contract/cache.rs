@@ -25,7 +25,7 @@ fn a_folder_that_others_may_write_is_refused() {
     let cache = folder.0.join("cache");
     for mode in [0o777, 0o770, 0o707, 0o1777, 0o722] {
         make(&cache, mode);
-        has(&run(&folder).err(2), &["cache: other users may write to it", "set STAUNCH_CACHE"]);
+        has(&run(&folder).err(2), &["cache: other users can write to it", "set STAUNCH_CACHE"]);
         assert_eq!(fs::read_dir(&cache).unwrap().count(), 0, "{mode:o}");
     }
     make(&cache, 0o700);

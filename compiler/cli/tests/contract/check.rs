@@ -172,7 +172,7 @@ fn a_project_file_holds_the_settings_of_the_command_line() {
     folder.write("staunch.toml", "color = \"pink\"\n");
     has(&folder.staunch("check good.st").err(2), &["`color` is one of \"auto\", \"always\", \"never\""]);
     folder.write("staunch.toml", "quiet = 1\n");
-    has(&folder.staunch("check good.st").err(2), &["`quiet` is true or false"]);
+    has(&folder.staunch("check good.st").err(2), &["`quiet` must be true or false"]);
 }
 
 /// What a project file says is checked by every command, and reported at its line.
@@ -183,12 +183,12 @@ fn a_setting_that_is_wrong_is_reported_at_its_line() {
     for (setting, line, text) in [
         ("cycle = \"10\"", 2, "`cycle`: `10` is not a time above zero: write `10ms`"),
         ("cycle = \"0ms\"", 2, "is not a time above zero"),
-        ("cycle = 10", 2, "`cycle` is a text in quotes"),
+        ("cycle = 10", 2, "`cycle` must be a string in quotes"),
         ("dialect = \"iecc\"", 2, "there is no dialect `iecc`; did you mean `iec`?"),
         ("dialekt = \"iec\"", 2, "there is no setting `dialekt`; did you mean `dialect`?"),
         ("allow = [\"W501\"]", 2, "there is no lint `W501`; did you mean `W0501`?"),
         ("deny = [\n  \"W0501\",\n  \"E0203\",\n]", 4, "E0203 is an error"),
-        ("quiet = \"yes\"", 2, "`quiet` is true or false"),
+        ("quiet = \"yes\"", 2, "`quiet` must be true or false"),
         ("libraries = [\"no\"]", 2, "there is no file or folder `no`"),
     ] {
         folder.write("staunch.toml", format!("# a plant\n{setting}\n"));
@@ -300,7 +300,10 @@ fn the_doctor_says_what_to_install() {
     assert_eq!(bare.status.code(), Some(2), "{text}");
     let missing = ["ok  an object", "missing  an executable of native code: no linker was found", "https://rustup.rs"];
     has(&text, &missing);
-    has(&folder.staunch("doctor --target no-such-machine").out(2), &["rustc knows no target `no-such-machine`"]);
+    has(
+        &folder.staunch("doctor --target no-such-machine").out(2),
+        &["rustc does not know the target `no-such-machine`"],
+    );
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! What is declared `{external}`: where it is called, and where it is not there.
+//! What is declared `{external}`: where it is called, and where it is missing.
 
 use super::{Folder, Ran, has};
 use std::path::Path;
@@ -118,7 +118,7 @@ fn the_example_in_c_does_what_its_readme_shows() {
     assert_eq!(Some(&*ran(&folder)), shown);
 }
 
-/// What runs the program itself says what is missing, and a mock stands in for it.
+/// Commands that run the program report what is missing, and a mock can replace it.
 #[test]
 fn what_is_outside_is_not_there_in_a_run() {
     let tests = "\

@@ -12,7 +12,7 @@ fn lists_are_named_after_their_files() {
     has(&folder.staunch(&format!("run main.st _Line2.st {trace}")).out(0), &["1,0,7"]);
     folder.write("main.st", MAIN.replace("_Line2.", ""));
     has(&folder.staunch(&format!("run main.st _Line2.st {trace}")).out(0), &["1,0,7"]);
-    // What is no name is not one of a list.
+    // A file whose name is not an identifier gives no list a name.
     has(&folder.staunch(&format!("run main.st 2Line.st {trace}")).out(0), &["1,0,7"]);
 }
 

@@ -25,19 +25,19 @@ END_TEST
 
 /// Nothing reads the block's preset, nor `spare`. Of line 6, a count of 2 where 2 is enough and one of 1 where it is not
 /// are tested: `>=` is held on both sides, `2` too.
-const SURVIVORS: &str = "gate.st:5:34: no test notices
+const SURVIVORS: &str = "gate.st:5:34: no test detects
   - c(CU := pulse, R := FALSE, PV := 2);
   + c(CU := pulse, R := FALSE, PV := 3);
-gate.st:5:34: no test notices
+gate.st:5:34: no test detects
   - c(CU := pulse, R := FALSE, PV := 2);
   + c(CU := pulse, R := FALSE, PV := 1);
-gate.st:7:1: no test notices
+gate.st:7:1: no test detects
   - spare := 7;
   + ;
-gate.st:7:10: no test notices
+gate.st:7:10: no test detects
   - spare := 7;
   + spare := 8;
-gate.st:7:10: no test notices
+gate.st:7:10: no test detects
   - spare := 7;
   + spare := 6;
 ";

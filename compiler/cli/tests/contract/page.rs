@@ -56,7 +56,7 @@ fn a_page_zooms_moves_and_reads_values() {
     assert!(page.len() < 12_000_000 && !page.contains("http://") && !page.contains("https://"));
     folder.write("visit.html", page.replace("</body>", &format!("{VISIT}</body>")));
     let Some(dom) = BROWSERS.iter().find_map(|it| visit(it, &folder)) else {
-        assert!(std::env::var_os("CI").is_none(), "there is no browser to try a page in");
+        assert!(std::env::var_os("CI").is_none(), "no browser was found to try a page in");
         eprintln!("SKIPPED: a_page_zooms_moves_and_reads_values: there is no {}", BROWSERS.join(", no "));
         return;
     };

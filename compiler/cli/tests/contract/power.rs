@@ -85,7 +85,7 @@ fn last_traced(folder: &Folder) -> u64 {
     whole.lines().last().and_then(|it| it.rsplit(',').next()?.parse().ok()).unwrap_or(0)
 }
 
-/// Kills a program many times over. Each start goes on from what the one before left.
+/// Kills a program many times over. Each start continues from what the one before left.
 fn is_killed(folder: &Folder, mut run: impl FnMut() -> Command) {
     let (mut before, mut later) = (0, 0);
     for number in 0..kills() {

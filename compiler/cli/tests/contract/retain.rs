@@ -86,7 +86,7 @@ fn a_damaged_state_gives_way_to_the_one_before_and_a_note() {
     bytes[2 * SECTOR + SLOT_HEAD] ^= 0x10;
     folder.write("plant.retain", &bytes);
     let ran = folder.staunch(RUN);
-    has(&ran.err, &["note: plant.retain: one of its two states is not whole"]);
+    has(&ran.err, &["note: plant.retain: one of its two states is incomplete"]);
     assert_eq!(ran.out(0).lines().last(), Some("2,10,4,8,4,2"));
 }
 

@@ -130,7 +130,7 @@ fn numbers_share_a_lane_of_a_picture() {
         has(&folder.read("o.svg"), &[">b</text>", "class=\"number second\""]);
     }
     let error = folder.staunch("run p.st --scans 5 --trace o.csv --overlay a,b").err(2);
-    has(&error, &["--overlay: it is for a picture: write --trace OUT.svg"]);
+    has(&error, &["--overlay: it is only for a picture: write --trace OUT.svg"]);
 }
 
 #[test]
@@ -169,7 +169,7 @@ fn a_window_is_cut_by_scans_or_times() {
     }
     // Without `--scans` the run ends with the window.
     has(&folder.staunch("run main.st --from 249 --to 250").out(0), &[" 249  2s480ms  249\n", "250 scans"]);
-    has(&folder.staunch("run main.st --from 9 --to 8").err(0), &["note: no scan lies between"]);
+    has(&folder.staunch("run main.st --from 9 --to 8").err(0), &["note: no scan is between"]);
     has(&folder.staunch("run main.st --to soon").err(2), &["`120` or `1s200ms`"]);
 }
 
@@ -297,7 +297,7 @@ PROGRAM B VAR y : INT; END_VAR y := y + 2; END_PROGRAM
     let expected = "scan,time_ms,A.x,B.y\n1,0,1,2\n2,10,2,4\n";
     assert_eq!(folder.staunch("run configured.st --scans 2 --trace -").out(0), expected);
     has(&folder.staunch("compare configured.st --from iec --to siemens").out(0), &["are equal"]);
-    let which = "the sources hold several programs; choose one with --program: there are A, B";
+    let which = "the sources have several programs; choose one with --program: there are A, B";
     has(&folder.staunch("run plain.st --scans 2").err(2), &[which]);
 }
 
@@ -339,7 +339,7 @@ END_PROGRAM
     let folder = Folder::with("logs", &[("main.st", logs), ("in.csv", restart)]);
     let told = folder.staunch("run main.st --scans 3").err(0);
     let of_scan_2 = "log, scan 2: error: pump P7\nlog, scan 2: warning: 3 \"parts\"\n";
-    has(&told, &[of_scan_2, "\nlog, scan 3: note: 2 messages before these are not kept\nlog, scan 3: message: 3\n"]);
+    has(&told, &[of_scan_2, "\nlog, scan 3: note: 2 earlier messages were not kept\nlog, scan 3: message: 3\n"]);
     assert!(told.ends_with("log, scan 3: message: 18\n"), "{told}");
     let fault = folder.staunch("run main.st").err(3);
     has(&fault, &["log, scan 4: hint: before the fault\nerror: "]);

@@ -47,7 +47,7 @@ fn what_is_retained_after_a_fault_is_of_the_last_whole_scan() {
         let _ = fs::remove_file(folder.0.join("plant.retain"));
         has(&run().err(3), &[FAULT]);
         let read_first = read();
-        has(&read_first.err, &["note: plant.retain: a run ended by a fault", FAULT]);
+        has(&read_first.err, &["note: plant.retain: a run ended with a fault", FAULT]);
         assert_eq!(read_first.out(0), "scan,time_ms,a,b\n1,0,4,4\n", "{name}");
         // A run that ended well has taken the note away.
         assert_eq!(read().err, "", "{name}");
@@ -84,7 +84,7 @@ fn a_run_in_real_time_goes_on_without_a_trace() {
             .output()
             .unwrap();
         for ran in [folder.staunch(&format!("run main.st {run} {trace}")), Ran::of(executable)] {
-            has(&ran.err, &["warning: cannot write", "runs on without it", "3 rows could not be written"]);
+            has(&ran.err, &["warning: cannot write", "continues without it", "3 rows could not be written"]);
             assert_eq!(ran.code, 0, "{trace}: {ran:?}");
         }
     }
@@ -102,7 +102,7 @@ fn a_run_in_real_time_goes_on_without_a_trace() {
                 .success()
         );
         assert_eq!(folder.read("code"), "0\n", "{}", folder.read("err"));
-        has(&folder.read("err"), &["runs on without it", "rows could not be written"]);
+        has(&folder.read("err"), &["continues without it", "rows could not be written"]);
     }
     for trace in ["/dev/full", "missing/t.csv"] {
         has(&folder.staunch(&format!("run main.st --scans 3 --trace {trace}")).err(2), &["cannot write"]);

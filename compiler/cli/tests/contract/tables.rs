@@ -1,4 +1,4 @@
-//! `staunch test` with tables: a CSV file beside a source.
+//! `staunch test` with tables: a CSV file next to a source.
 
 use super::{COUNTER, Folder, has};
 
@@ -129,15 +129,15 @@ END_PROGRAM
     }
     folder.write("timed.csv", "share,|,m\n1,|,10\n");
     has(&folder.staunch("test .").out(1), &["timed.csv:1:9: there is no variable `m`"]);
-    // Without a bar it is no test.
+    // Without a bar it is not a test.
     folder.write("timed.csv", "scan,share\n1,10\n");
-    has(&folder.staunch("test .").err(2), &["the sources hold no TEST, and no table is beside them"]);
+    has(&folder.staunch("test .").err(2), &["the sources have no TEST, and no table is next to them"]);
 }
 
 #[test]
 fn a_table_runs_the_program_of_its_source() {
     let program = |name: &str, by: u8| format!("PROGRAM {name}\nVAR n : INT; END_VAR\nn := n + {by};\nEND_PROGRAM\n");
-    let tests = "TEST 'beside' VAR a : A; END_VAR a(); ASSERT_EQ(a.n, 1); END_TEST\n";
+    let tests = "TEST 'next to' VAR a : A; END_VAR a(); ASSERT_EQ(a.n, 1); END_TEST\n";
     let folder = Folder::with(
         "table_programs",
         &[
@@ -153,7 +153,7 @@ fn a_table_runs_the_program_of_its_source() {
     has(
         &out,
         &[
-            "c.st\n  ok      beside\na.csv\n  ok      a\nb.csv\n  ok      b\nc.csv\n  FAILED  c\n",
+            "c.st\n  ok      next to\na.csv\n  ok      a\nb.csv\n  ok      b\nc.csv\n  FAILED  c\n",
             "no CONFIGURATION says which PROGRAMs run",
             "there are `A`, `B`\n",
         ],
@@ -188,7 +188,7 @@ END_PROGRAM
     has(
         &folder.staunch("test . -A warnings").out(1),
         &[
-            "x.csv:1:7: there is no variable `o`; did you mean `n`?\n          no CONFIGURATION runs what x.st has: `A`, `B`\n",
+            "x.csv:1:7: there is no variable `o`; did you mean `n`?\n          no CONFIGURATION runs a PROGRAM of x.st: `A`, `B`\n",
         ],
     );
 }
@@ -215,7 +215,7 @@ END_PROGRAM
             1,
             "          lib/x.st:1:10: fault: what is called is not implemented here (scan 2, program Main)
           FUNCTION Ext : INT
-          the program calls `Ext`, which has no body here: a TEST may replace it, by `MOCK_FUNCTION Ext RETURNS value;`\n",
+          the program calls `Ext`, which has no body here: a TEST can replace it, with `MOCK_FUNCTION Ext RETURNS value;`\n",
         ),
     ] {
         folder.write("main.csv", table);

@@ -84,7 +84,7 @@ const WANTED: [&str; 19] = [
     "a test ends with TEST_FINISHED()",
     "  skipped PartsTest.off: it is disabled",
     "  FAILED  PartsTest.twice",
-    "begins a test of this title twice",
+    "begins a test with this title twice",
     "  skipped PartsTest.forgotten: the suite never begins it",
     "2 passed, 5 failed, 2 skipped",
     "",
@@ -164,7 +164,7 @@ END_FUNCTION_BLOCK
     folder.write("t.st", source);
     let ran = folder.staunch("test t.st");
     assert_eq!(ran.code, 1, "{}", ran.err);
-    // T is there for U to extend.
+    // U extends T.
     for line in
         ["ok      U.before", "FAILED  U.in it", "t.st:5:30: division by zero", "FAILED  U.after", "1 passed, 2 failed"]
     {
@@ -318,6 +318,6 @@ END_FUNCTION_BLOCK
     let out = folder.staunch("test . --dialect codesys --scans 3").out(1);
     has(&out, &["FAILED  Starts.starts\n", "ok      Ends.one\n", "1 passed, 1 failed, 2 skipped\n"]);
     for title in ["Starts.strats", "Ends.typo"] {
-        has(&out, &[&format!("skipped {title}: TEST_FINISHED_NAMED names it, and the suite never begins it\n")]);
+        has(&out, &[&format!("skipped {title}: TEST_FINISHED_NAMED names it, but the suite never begins it\n")]);
     }
 }

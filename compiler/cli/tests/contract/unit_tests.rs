@@ -79,7 +79,7 @@ fn tests_pass() {
         let out = folder.staunch(&format!("test . --backend {backend}")).out(0);
         has(&out, &["motor_test.st\n  ok      setup runs before each test\n", "\n5 passed, 0 failed\n"]);
     }
-    // They are no part of what is built or run.
+    // They are not part of what is built or run.
     assert!(!folder.staunch("run . --scans 1 --trace -").out(0).contains("test"));
     assert!(!folder.staunch("build . --emit map -o -").out(0).contains("mocked"));
 }
@@ -213,7 +213,7 @@ TEST 'bad' ASSERT_EQ(Sum(1, 2), 4); END_TEST
     let filtered = folder.staunch("test . --filter GOOD").out(0);
     has(&filtered, &["1 passed, 0 failed"]);
     has(&folder.staunch("test . --filter other").err(2), &["no test has `other` in its title"]);
-    has(&folder.staunch("test motor.st").err(2), &["the sources hold no TEST"]);
+    has(&folder.staunch("test motor.st").err(2), &["the sources have no TEST"]);
 }
 
 #[test]
@@ -365,12 +365,12 @@ END_TEST
     folder.write("back.st", source);
     let ran = folder.staunch("test back.st");
     assert_eq!(ran.code, 1, "{}", ran.err);
-    has(&ran.out, &["back.st:5:18: n - 1", "since time does not go back, found T#-1ns"]);
+    has(&ran.out, &["back.st:5:18: n - 1", "since time cannot go backwards, found T#-1ns"]);
     has(&ran.out, &["ASSERT_NEQ(x, y)", "expected to refer to another object\n"]);
     folder.write("back.st", "TEST 'constant' ADVANCE_TIME(T#-3s); END_TEST");
     let ran = folder.staunch("test back.st");
     assert_eq!(ran.code, 1);
-    has(&ran.err, &["time does not go back"]);
+    has(&ran.err, &["time cannot go backwards"]);
 }
 
 #[test]
@@ -425,10 +425,10 @@ TEST 'heir' VAR own : Own; END_VAR MOCK own; own(speed := 3); ASSERT_EQ(own.n, 0
     assert_eq!(refused.matches("or `{external}` before it").count(), 1, "{refused}");
     folder.write("t.st", "FUNCTION F : INT F := 1; END_FUNCTION TEST 'a' MOCK_VERIFY_CALL_COUNT(F, 1); END_TEST");
     let refused = folder.staunch("test t.st").err(1);
-    has(&refused, &["no calls of the FUNCTION `F` are counted", "`MOCK_FUNCTION F RETURNS value;`"]);
+    has(&refused, &["calls of the FUNCTION `F` are not counted", "`MOCK_FUNCTION F RETURNS value;`"]);
 }
 
-/// What lies at an address is a member of its PROGRAM, in every dialect: a test sets and reads it.
+/// A variable at an address is a member of its PROGRAM, in every dialect: a test sets and reads it.
 #[test]
 fn a_test_sees_what_lies_at_an_address() {
     let source = "PROGRAM Main
@@ -478,17 +478,17 @@ END_FUNCTION_BLOCK
     has(&folder.staunch("test s.st --filter none").err(2), &["no test has `none` in its title; there are 2 suites\n"]);
     let empty = "{dialect 'codesys'}\nFUNCTION_BLOCK Empty EXTENDS TcUnit.FB_TestSuite\n;\nEND_FUNCTION_BLOCK\n";
     folder.write("e.st", empty);
-    has(&folder.staunch("test e.st").err(2), &["no test is there to run"]);
+    has(&folder.staunch("test e.st").err(2), &["no test to run"]);
     folder.write("f.st", "{TestFixture}\nCLASS Fixture\nEND_CLASS\n");
-    has(&folder.staunch("test f.st").err(2), &["no test is there to run"]);
+    has(&folder.staunch("test f.st").err(2), &["no test to run"]);
     folder.write("one.st", "TEST \"a $\"quoted$\" one, $$5\" ASSERT_TRUE(FALSE); END_TEST\n");
     has(&folder.staunch("test one.st --filter none").err(2), &["there is 1 test\n"]);
     let ran = folder.staunch("test one.st --mutants");
     has(&ran.out, &["FAILED  a \"quoted\" one, $5\n"]);
-    has(&ran.err(1), &["the mutants: they are tried where all tests pass"]);
+    has(&ran.err(1), &["the mutants: they are tried only if all tests pass"]);
     folder.write("one.csv", "n,|,n\n");
     has(
         &folder.staunch("test one.csv").err(2),
-        &["one.csv is a table, no source: name the source that it is beside, one.st"],
+        &["one.csv is a table, not a source: name the source next to it, one.st"],
     );
 }

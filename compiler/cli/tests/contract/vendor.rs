@@ -169,16 +169,16 @@ fn a_project_that_cannot_be_read_is_said() {
     folder.write("Line.plcproj", PROJECT.replace("</ItemGroup>", ""));
     has(&folder.staunch("check Line.plcproj").err(2), &["Line.plcproj", "XML"]);
     folder.write("Line.plcproj", "<Project></Project>");
-    has(&folder.staunch("check Line.plcproj").err(2), &["Line.plcproj lists no source file"]);
+    has(&folder.staunch("check Line.plcproj").err(2), &["Line.plcproj does not list a source file"]);
     folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "NONE.TcPOU"));
     let absent = folder.staunch("check Line.plcproj").err(1);
-    has(&absent, &["E0033", "POUs/NONE.TcPOU:1:1", "`NONE.TcPOU` is not there, and the project lists it"]);
+    has(&absent, &["E0033", "POUs/NONE.TcPOU:1:1", "the project lists `NONE.TcPOU`, but the file does not exist"]);
     // No condition is blamed for what is not known of its declarations.
     let asks = MAIN.replacen("GVL_Line.parts :=", "{IF defined(task: FastTask)} {END_IF} GVL_Line.parts :=", 1);
     folder.write("POUs/MAIN.TcPOU", asks);
     folder.write("Line.plcproj", PROJECT.replacen("<ItemGroup>", "<ItemGroup><Compile Include=\"NONE.TcPOU\"/>", 1));
     let absent = folder.staunch("check Line.plcproj --message-format short").err(1);
-    assert!(absent.contains("`NONE.TcPOU` is not there") && !absent.contains("E0902"), "{absent}");
+    assert!(absent.contains("the project lists `NONE.TcPOU`") && !absent.contains("E0902"), "{absent}");
     folder.write("POUs/MAIN.TcPOU", MAIN);
     // As Windows finds it.
     folder.write("Line.plcproj", PROJECT.replace("MAIN.TcPOU", "Main.TCPOU"));
@@ -237,7 +237,7 @@ fn a_solution_leads_to_its_project() {
     let several = folder.staunch("check Plant.sln").err(2);
     has(&several, &["2 PLC projects; name one of them: Line.plcproj, Other.plcproj"]);
     folder.write("Plant.sln", solution.replace("tsproj", "vcxproj"));
-    has(&folder.staunch("check Plant.sln").err(2), &["Plant.sln lists no PLC project"]);
+    has(&folder.staunch("check Plant.sln").err(2), &["Plant.sln does not list a PLC project"]);
 }
 
 #[test]
@@ -254,7 +254,7 @@ fn libraries_of_the_project_file_are_used_and_not_judged() {
     folder.write("lib/own.st", own);
     folder.write("lib/stubs/vendor.st", stub);
     folder.staunch("check").out(0);
-    // A file that is named has the libraries of the project that it lies in.
+    // A file that is named has the libraries of the project that it is in.
     folder.staunch("check src/main.st").out(0);
     let refused = folder.staunch("run --scans 1").err(1);
     has(&refused, &["error[E0318]: `Vendors` has no implementation", "src/main.st:1:", "lib/stubs/vendor.st"]);

@@ -111,7 +111,7 @@ impl<'s> Checker<'_, 's> {
         self.assert(claim?, message, span)
     }
 
-    /// Whether the user has a variable, a POU, or a METHOD around of that name.
+    /// Whether the user has declared a variable, a POU, or a METHOD around with this name.
     fn is_declared(&self, name: ast::Name<'s>) -> bool {
         self.scope.get(name.text).is_some() || self.decl.declared(name).is_some() || self.own_routine(name).is_some()
     }
@@ -305,9 +305,9 @@ impl<'s> Checker<'_, 's> {
         if let Some(value) = duration.as_const() {
             if matches!(value, Value::I64(it) if it < 0) {
                 self.report(
-                    Diagnostic::new(Code::E0202, span, "time does not go back")
-                        .label("this duration is less than nothing")
-                        .help("write what passes until then: `ADVANCE_TIME(T#100ms)`"),
+                    Diagnostic::new(Code::E0202, span, "time cannot go backwards")
+                        .label("this duration is negative")
+                        .help("write how much time passes: `ADVANCE_TIME(T#100ms)`"),
                 );
                 return None;
             }
@@ -318,7 +318,7 @@ impl<'s> Checker<'_, 's> {
         let none = Expr::constant(Elementary::Time, Value::I64(0), at);
         let holds = self.apply(Op::Ge, time, vec![duration.clone(), none], Type::BOOL, span)?;
         let claim =
-            Claim { actual: Some(actual), ..Claim::new(holds, "to be a duration, since time does not go back") };
+            Claim { actual: Some(actual), ..Claim::new(holds, "not to be negative, since time cannot go backwards") };
         self.assert(claim, None, span)?;
         Some(duration)
     }
@@ -340,7 +340,7 @@ impl<'s> Checker<'_, 's> {
             self.report(
                 Diagnostic::new(Code::E0316, instance.span, format!("`{text}` cannot be replaced by a mock"))
                     .label(format!("it is {}", crate::diagnostic::wording::article(&ty)))
-                    .help("a mock takes the place of an instance of a FUNCTION_BLOCK that the sources declare"),
+                    .help("only an instance of a FUNCTION_BLOCK that the sources declare can be mocked"),
             );
         }
         let (field, ty) = field?;
@@ -383,8 +383,8 @@ impl<'s> Checker<'_, 's> {
     fn not_replaced<T>(&mut self, span: Span) -> Option<T> {
         let name = self.decl.log.sources.text(span).to_owned();
         self.report(
-            Diagnostic::new(Code::E0316, span, format!("no calls of the FUNCTION `{name}` are counted"))
-                .label("no test replaces it")
+            Diagnostic::new(Code::E0316, span, format!("calls of the FUNCTION `{name}` are not counted"))
+                .label("it is not mocked in any test")
                 .help(format!("replace it first: `MOCK_FUNCTION {name} RETURNS value;`")),
         );
         None
@@ -405,7 +405,7 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(span);
         let zero = Expr::constant(Elementary::Dint, Value::I32(0), at);
         let holds = self.apply(Op::Gt, Type::Elementary(Elementary::Dint), vec![calls, zero], Type::BOOL, span)?;
-        Some(Claim { actual: Some(actual), ..Claim::new(holds, "one call at least") })
+        Some(Claim { actual: Some(actual), ..Claim::new(holds, "at least one call") })
     }
 
     fn call_count(&mut self, instance: &ast::Expr<'s>, count: &ast::Expr<'s>, span: Span) -> Option<Claim> {
@@ -427,7 +427,7 @@ impl<'s> Checker<'_, 's> {
             let name = self.decl.log.sources.text(function.span).to_owned();
             self.report(
                 Diagnostic::new(Code::E0316, function.span, format!("`{name}` cannot be replaced by a mock"))
-                    .label("it is no FUNCTION with a result that the sources declare"),
+                    .label("only a FUNCTION with a result that the sources declare can be mocked"),
             );
             return None;
         }

@@ -72,7 +72,7 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    /// The FUNCTION, by the first one of its name, which may be a project's own.
+    /// The FUNCTION, found by the first one with its name, which may be a project's own.
     fn axunit_callee(&self, callee: &ast::Expr<'s>) -> Option<usize> {
         let path = callee.path()?;
         let is_one =
@@ -172,8 +172,8 @@ impl<'s> Checker<'_, 's> {
         if found.is_none() {
             let text = self.decl.log.sources.text(expr.span).to_owned();
             self.report(
-                Diagnostic::new(Code::E0316, expr.span, format!("`{text}` names no FUNCTION or FUNCTION_BLOCK"))
-                    .label("what is exchanged, and what runs in its place, are known by their names")
+                Diagnostic::new(Code::E0316, expr.span, format!("`{text}` does not name a FUNCTION or FUNCTION_BLOCK"))
+                    .label("expected the name of the POU to replace, or of its replacement")
                     .help("write `NAME_OF(Name)`, or its name in full, `'Space.Name'`"),
             );
         }
@@ -217,7 +217,7 @@ impl<'s> Checker<'_, 's> {
         None
     }
 
-    /// Notes the first assertion that fails, and goes on.
+    /// Notes the first assertion that fails; the test continues.
     fn assert_in_fixture(&mut self, claim: Claim, message: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
         if self.is_test() {
             return self.assert(claim, message, span);

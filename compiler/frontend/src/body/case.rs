@@ -92,7 +92,7 @@ impl<'s> Checker<'_, 's> {
 
     /// A CASE selects by none of this type; of a text, an IF does.
     fn not_a_selector(&self, selector: &ast::Expr<'s>, arms: &[ast::Arm<'s>], ty: Type) -> Diagnostic {
-        let message = format!("CASE selects by an integer or enumeration, this is {}", self.type_name(ty));
+        let message = format!("CASE needs an integer or an enumeration, but this is {}", self.type_name(ty));
         let error = Diagnostic::new(Code::E0201, selector.span, message)
             .label("expected an integer, a bit string or an enumeration");
         let is_text = matches!(ty, Type::String(_)) || ty.elementary().is_some_and(Elementary::is_char);

@@ -45,8 +45,8 @@ impl<'s> Checker<'_, 's> {
         let span = label.low.span;
         if let Some(high) = &label.high {
             self.report(
-                Diagnostic::new(Code::E0201, span.to(high.span), "there are no ranges of texts")
-                    .label("expected one text, or several with `,` between them"),
+                Diagnostic::new(Code::E0201, span.to(high.span), "a range of strings is not allowed as a CASE label")
+                    .label("expected one string, or several separated by `,`"),
             );
             return None;
         }

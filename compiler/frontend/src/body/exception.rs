@@ -79,7 +79,7 @@ impl<'s> Checker<'_, 's> {
         if !self.is_exception(ty) {
             let ty = self.type_name(ty);
             self.report(
-                Diagnostic::new(Code::E0513, target.span, format!("`__CATCH` needs an exception, this is {ty}"))
+                Diagnostic::new(Code::E0513, target.span, format!("`__CATCH` needs an exception, but this is {ty}"))
                     .label("expected a variable of `__SYSTEM.ExceptionCode`")
                     .help("declare it so: `exc : __SYSTEM.ExceptionCode;`"),
             );
@@ -138,7 +138,7 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(Code::E0513, leaving, format!("{word} leaves a `__TRY` that has a `__FINALLY`"))
                     .label("whether `__FINALLY` runs then is not documented")
                     .other(finally, "this may have to run")
-                    .help("set a BOOL here, and ask for it after `__ENDTRY`"),
+                    .help("set a BOOL here, and test it after `__ENDTRY`"),
             );
         }
     }

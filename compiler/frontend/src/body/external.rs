@@ -58,10 +58,10 @@ impl<'s> Checker<'_, 's> {
         let is_written =
             |it: &&ast::Statement<'_>| !matches!(it.kind, ast::StatementKind::Empty) && it.span != pou.name.span;
         if let Some(first) = statements.iter().find(is_written) {
-            let message = format!("`{}` is `{{external}}`, and has a body", pou.name.text);
+            let message = format!("`{}` is `{{external}}` but has a body", pou.name.text);
             self.report(
                 Diagnostic::new(Code::E0319, first.span, message)
-                    .label("what it does is said outside")
+                    .label("it is implemented outside the program")
                     .help("delete the body, or `{external}`"),
             );
         }
@@ -129,27 +129,32 @@ impl<'s> Declarations<'s> {
         }
         let own = pou.routines.iter().find(|it| it.name.text != crate::start::START);
         if let Some(routine) = own {
-            let message = format!("`{}` is `{{external}}`, and has {}", pou.name.text, article(routine.kind.word()));
-            let help = "pass an input that says what is to be done, or declare FUNCTIONs for it";
-            self.refuse_external(routine.name.span, message, "only what is called by the instance is outside", help);
+            let message = format!("`{}` is `{{external}}` but has {}", pou.name.text, article(routine.kind.word()));
+            let help = "pass an input that selects what to do, or declare an external FUNCTION for each METHOD";
+            self.refuse_external(routine.name.span, message, "only a call of the instance itself is external", help);
         }
         if let Some(base) = pou.extends.or(pou.implements.first().copied()) {
-            let message = format!("`{}` is `{{external}}`, and has a base", pou.name.text);
-            self.refuse_external(base.span, message, "there are no METHODs outside", "delete it");
+            let message = format!("`{}` is `{{external}}` but has a base", pou.name.text);
+            self.refuse_external(base.span, message, "METHODs cannot be external", "delete it");
         }
         if self.is_generic(slot) || self.pous[slot].instance.is_some() {
-            let message = format!("`{}` is `{{external}}`, and generic", pou.name.text);
+            let message = format!("`{}` is `{{external}}` but generic", pou.name.text);
             self.refuse_external(
                 pou.name.span,
                 message,
-                "what is outside has one type each",
+                "an external parameter has one type",
                 "declare one for each type",
             );
         }
         let edges = pou.blocks.iter().flat_map(|it| &it.vars).filter_map(|it| it.edge);
         for (_, span) in edges {
-            let message = format!("`{}` is `{{external}}`, and has an input that is an edge", pou.name.text);
-            self.refuse_external(span, message, "its trigger is a block", "delete it, and look for the edge outside");
+            let message = format!("`{}` is `{{external}}` but has an edge input", pou.name.text);
+            self.refuse_external(
+                span,
+                message,
+                "edges are detected in a body, and it has none here",
+                "delete it, and detect the edge in the implementation",
+            );
         }
         let is_unused = |it: &&ast::VarBlock<'_>| match it.kind {
             VarKind::Temp | VarKind::External | VarKind::Stat | VarKind::Inst => true,
@@ -158,8 +163,8 @@ impl<'s> Declarations<'s> {
         };
         if let Some(block) = pou.blocks.iter().find(is_unused) {
             let word = self.log.sources.text(block.span).to_ascii_uppercase();
-            let message = format!("`{}` is `{{external}}`, and has {word}", pou.name.text);
-            self.refuse_external(block.span, message, "it has no body that uses it", "delete it");
+            let message = format!("`{}` is `{{external}}` but has {word}", pou.name.text);
+            self.refuse_external(block.span, message, "no body here can use these variables", "delete it");
         }
     }
 
@@ -167,7 +172,7 @@ impl<'s> Declarations<'s> {
     fn check_passed(&mut self, ty: Type, is_written: bool, span: Span, pou: &ast::Pou<'s>) {
         let Some(reason) = self.not_passed(ty, is_written) else { return };
         let message =
-            format!("`{}` is `{{external}}`, and {} cannot be passed", pou.name.text, self.program.type_name(ty));
+            format!("`{}` is `{{external}}`, but {} cannot be passed", pou.name.text, self.program.type_name(ty));
         self.report(Diagnostic::new(Code::E0319, span, message).label(reason));
     }
 
@@ -175,16 +180,16 @@ impl<'s> Declarations<'s> {
         match ty {
             Type::Elementary(_) | Type::String(_) | Type::Enum(_) => None,
             Type::Subrange(..) => {
-                is_written.then_some("nothing outside holds the limits: declare the type without them")
+                is_written.then_some("the implementation is not held to the limits: declare the type without them")
             }
-            Type::Reference(_) => Some("what a reference leads to is checked here, and not outside: pass the variable"),
-            Type::Block(_) => Some("blocks are called in Structured Text alone: pass its outputs"),
+            Type::Reference(_) => Some("references are checked only in Structured Text: pass the variable itself"),
+            Type::Block(_) => Some("blocks are called only in Structured Text: pass its outputs"),
             Type::Array(id) if self.program.array(id).is_open() => {
                 Some("it has no size of its own: declare the bounds")
             }
             Type::Array(id) => self.not_passed(self.program.array(id).element, is_written),
             Type::Struct(id) if self.slot_of_instance(id).is_some() => {
-                Some("blocks are called in Structured Text alone: pass its outputs")
+                Some("blocks are called only in Structured Text: pass its outputs")
             }
             Type::Struct(id) => {
                 self.program.structure(id).fields.iter().find_map(|it| self.not_passed(it.ty, is_written))
@@ -200,15 +205,24 @@ impl<'s> Declarations<'s> {
         if symbol.is_empty() || !is_name || symbol.starts_with("staunch_") {
             let message = format!("`{symbol}` cannot be a symbol of C");
             let help = "write another: `{external 'name'}`";
-            return self.refuse_external(pou.name.span, message, "letters, digits and `_`, not `staunch_`", help);
+            return self.refuse_external(
+                pou.name.span,
+                message,
+                "expected letters, digits and `_`; `staunch_` is reserved",
+                help,
+            );
         }
         let before = self.externals.entry(symbol.to_owned()).or_insert(pou.name.span);
         let before = *before;
         if before != pou.name.span {
             self.report(
-                Diagnostic::new(Code::E0319, pou.name.span, format!("two `{{external}}` are `{symbol}` outside"))
-                    .other(before, "the other one")
-                    .help("give one of them another symbol: `{external 'name'}`"),
+                Diagnostic::new(
+                    Code::E0319,
+                    pou.name.span,
+                    format!("two `{{external}}` POUs have the symbol `{symbol}`"),
+                )
+                .other(before, "the other one")
+                .help("give one of them another symbol: `{external 'name'}`"),
             );
         }
     }

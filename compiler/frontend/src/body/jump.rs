@@ -77,7 +77,7 @@ impl<'s> Checker<'_, 's> {
                 self.report(Diagnostic::new(Code::E0514, name.span, format!("more than {MOST} labels in one list")));
             } else if !self.known_labels.insert(Key(name.text)) {
                 self.report(
-                    Diagnostic::new(Code::E0514, name.span, format!("the label `{}` is there twice", name.text))
+                    Diagnostic::new(Code::E0514, name.span, format!("the label `{}` is used twice", name.text))
                         .label("which one is meant?"),
                 );
             }
@@ -104,10 +104,10 @@ impl<'s> Checker<'_, 's> {
                 name.span,
                 format!("there is no label `{}` to jump to from here", name.text),
             )
-            .label("a label is in the same list of statements, or in one around it");
+            .label("the label must be in the same list of statements, or in one around it");
             let error = match nearest(name.text, labels) {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
-                None => error.help(format!("write `{}:` there; a jump does not lead into a block", name.text)),
+                None => error.help(format!("write `{}:` there; a jump cannot enter a block", name.text)),
             };
             self.report(error);
             return;
@@ -142,7 +142,7 @@ impl<'s> Checker<'_, 's> {
         self.jumps.last().is_some_and(|it| it.loops == self.loops)
     }
 
-    /// After a loop that a jump may have left: it goes on to where it leads.
+    /// After a loop that a jump may have left: the jump continues to its label.
     pub(super) fn pass_jumps(&mut self, span: Span) {
         for list in 0..self.jumps.len() {
             let Some(next) = self.jumps.get(list).filter(|it| it.passes_loops).map(|it| it.next.clone()) else {
@@ -180,8 +180,8 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-const WITHOUT: &str = "what it jumps over goes into an IF; what it goes back to into a WHILE or REPEAT, which EXIT leaves and \
-                       CONTINUE starts anew";
+const WITHOUT: &str = "put statements to skip into an IF, and statements to repeat into a WHILE or REPEAT; EXIT leaves a loop, and \
+                       CONTINUE starts its next turn";
 
 fn label<'s>(statement: &ast::Statement<'s>) -> Option<ast::Name<'s>> {
     match statement.kind {

@@ -60,7 +60,7 @@ impl<'s> Checker<'_, 's> {
             self.report(
                 Diagnostic::new(Code::W0508, span, "this loop never ends")
                     .label("the condition is constant, and nothing leaves the loop")
-                    .help("a scan has to come to its end: leave the loop with EXIT"),
+                    .help("a scan must end: leave the loop with EXIT"),
             );
         }
     }
@@ -209,7 +209,7 @@ impl<'s> Checker<'_, 's> {
                     Diagnostic::new(
                         Code::E0201,
                         span,
-                        format!("the counter of a FOR loop is an integer, this is {name}"),
+                        format!("the counter of a FOR loop must be an integer, but this is {name}"),
                     )
                     .label("expected an integer"),
                 );

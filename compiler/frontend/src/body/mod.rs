@@ -33,17 +33,21 @@ pub(crate) struct Checked {
 }
 
 /// Checks the bodies of all POUs, in the order of their slots, and then those of what
-/// they ask for: instances of generic FUNCTIONs, and routines that choose by a class. A body that is not kept is let go.
+/// they ask for: instances of generic FUNCTIONs, and routines that choose by a class. A body that is not kept is dropped.
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
         if decl.is_head(slot) {
-            decl.check_has_no_body(body, "a METHOD of an INTERFACE has no body", "its classes have one: delete it");
+            decl.check_has_no_body(
+                body,
+                "a METHOD of an INTERFACE has no body",
+                "the classes that implement it have one: delete this",
+            );
         } else if decl.is_abstract_routine(slot) {
             decl.check_has_no_body(
                 body,
                 "an ABSTRACT METHOD has no body",
-                "its heirs have one: delete it, or ABSTRACT",
+                "those that override it have one: delete this body, or ABSTRACT",
             );
         }
         if decl.is_generic(slot) || decl.is_head(slot) {

@@ -1,4 +1,4 @@
-//! `ASSERT_NEAR`: how far two numbers are apart. Of integers that is exact: what their own type cannot hold is a distance, too.
+//! `ASSERT_NEAR`: the distance of two numbers. For integers it is exact, even where their own type cannot hold it.
 
 use super::assertion::Claim;
 use crate::ast;

@@ -222,7 +222,7 @@ impl<'s> Checker<'_, 's> {
         Some(())
     }
 
-    /// What a VAR_CONFIG binds has the type that it says. A run copies it in first, and back where it is no input.
+    /// A variable that a VAR_CONFIG binds has the type given there. A run copies it in first, and back if it is not an input.
     fn check_binding(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>) -> Option<()> {
         let (Some(to), Some(from)) = (self.static_type(target), self.static_type(value)) else { return Some(()) };
         if to == from {
@@ -232,7 +232,7 @@ impl<'s> Checker<'_, 's> {
             let (to, from) = (self.type_name(to), self.type_name(from));
             self.report(
                 Diagnostic::new(Code::E0409, target.span, format!("this variable is {to}"))
-                    .label(format!("what lies at `{}` is {from}", address.text))
+                    .label(format!("the variable at `{}` is {from}", address.text))
                     .help(format!("write `{to}` here, or change the variable")),
             );
         }
@@ -249,7 +249,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// `r ?= x`: which instance a reference is given is known as the program runs. What is no instance is known when it is
+    /// `r ?= x`: which instance a reference is given is known only at run time. Whether it is an instance at all is known when it is
     /// compiled, so that an attempt that cannot succeed is refused.
     fn attempt(&mut self, target: &ast::Expr<'s>, value: &ast::Expr<'s>, span: Span) -> Option<()> {
         if let Some(made) = self.attempt_of_instance(target, value, span) {
@@ -259,7 +259,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(ty) = ty.filter(|it| !matches!(it, Type::Reference(_))) {
             let ty = self.type_name(ty);
             self.report(
-                Diagnostic::new(Code::E0211, target.span, format!("`?=` sets a reference, this is {ty}"))
+                Diagnostic::new(Code::E0211, target.span, format!("`?=` sets a reference, but this is {ty}"))
                     .label("expected a REF_TO")
                     .help("assign it with `:=`"),
             );

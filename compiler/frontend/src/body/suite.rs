@@ -289,7 +289,7 @@ impl<'s> Checker<'_, 's> {
         (name, Place::root(Root::Globals, Type::Struct(globals)).field(id, ty))
     }
 
-    /// Notes an assertion that fails, and goes on.
+    /// Notes an assertion that fails; the test continues.
     fn assert_in_suite(&mut self, claim: Claim, message: Option<&ast::Expr<'s>>, span: Span) -> Option<()> {
         self.assert_shared(claim, message, |this| this.condition(&call(FAILS, Vec::new(), span)), span)
     }

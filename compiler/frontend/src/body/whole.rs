@@ -59,7 +59,7 @@ impl<'s> Checker<'_, 's> {
                 .help("compare its outputs or members, each by itself")
         } else {
             Diagnostic::new(Code::E0204, span, format!("`AssertEquals` does not compare {expected} and {actual}"))
-                .label(format!("this is {actual}, {expected} is expected"))
+                .label(format!("expected {expected}, but this is {actual}"))
                 .help("structures and arrays are compared with others of their type")
         };
         self.report(error);

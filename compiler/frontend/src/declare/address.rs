@@ -1,4 +1,4 @@
-//! Direct addresses. What lies at an address is one field of the globals, whoever declares it:
+//! Direct addresses. The storage of an address is one field of the globals, whoever declares it:
 //! a global, several PROGRAMs, the instances of one PROGRAM, or a body that names the address.
 
 use crate::ast::{self, PouKind, VarKind};
@@ -34,7 +34,7 @@ pub(super) fn report_second_names(declarations: &mut Declarations<'_>, uses: &[U
         let text = declarations.log.sources.text(it.span);
         declarations.report(
             Diagnostic::new(Code::W0411, it.span, format!("`{text}` has two names"))
-                .label("what is assigned to one of them is read from the other")
+                .label("assigning to one changes the other")
                 .other(first, "the other one")
                 .help("give this variable an address of its own, or use one name"),
         );
@@ -85,7 +85,7 @@ impl<'s> Declarations<'s> {
     ) {
         let Some(address) = decl.address else { return };
         let in_blocks = self.dialect(address.span) == Dialect::Codesys;
-        let global = "declare it in VAR_GLOBAL and name it in VAR_EXTERNAL here";
+        let global = "declare it in VAR_GLOBAL, and list it in VAR_EXTERNAL here";
         let (message, help) = match (kind, block.kind) {
             (_, VarKind::Temp) => ("a VAR_TEMP has no address", "declare it in VAR"),
             (_, VarKind::InOut) => {
@@ -190,7 +190,7 @@ impl<'s> Declarations<'s> {
         first != second && self.smallest_part(first).is_ok() && self.smallest_part(second).is_ok()
     }
 
-    /// What is declared with another type than what lies at its address.
+    /// A declaration with another type than the storage at its address.
     fn new_view(
         &mut self,
         address: Address,
@@ -275,7 +275,7 @@ impl<'s> Declarations<'s> {
         self.report(
             Diagnostic::new(Code::E0409, span, "an instance has no address")
                 .label(format!("{name} {is}"))
-                .help("give an address to a variable, and connect that in the call"),
+                .help("give the address to a variable, and connect that in the call"),
         );
         true
     }
@@ -298,7 +298,7 @@ impl<'s> Declarations<'s> {
         self.synthetic_place(at)
     }
 
-    /// A field of the globals for what lies at an address.
+    /// A field of the globals as the storage of an address.
     pub(super) fn add_storage(
         &mut self,
         address: Address,

@@ -1,5 +1,5 @@
-//! What a VAR_CONFIG says of how variables start. What lies at the address that it gives starts as the variable does
-//! that is bound to it, unless the VAR_CONFIG has a value of its own, and is kept over a restart where the variable
+//! What a VAR_CONFIG says about how variables start. The storage at the address that it gives starts like the variable
+//! bound to it, unless the VAR_CONFIG has a value of its own, and is kept over a restart where the variable
 //! is. Where it has a value and no address, the variable of that one instance starts with it.
 
 use super::run::Run;
@@ -103,8 +103,12 @@ impl<'s> Declarations<'s> {
                 let Some((part, parts, ty)) = found else {
                     let owner = self.program.type_name(owner);
                     self.report(
-                        Diagnostic::new(Code::E0101, name.span, format!("{owner} keeps no variable `{}`", name.text))
-                            .label("a variable that lasts from scan to scan is expected"),
+                        Diagnostic::new(
+                            Code::E0101,
+                            name.span,
+                            format!("{owner} has no variable `{}` that keeps its value", name.text),
+                        )
+                        .label("expected a variable that keeps its value from scan to scan"),
                     );
                     return None;
                 };

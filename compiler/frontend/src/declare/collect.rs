@@ -26,7 +26,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Reports a base that is there, but not by the name that is written.
+    /// Reports a base that exists, but not under the name that is written.
     pub(super) fn check_bases(&mut self) {
         let written: Vec<_> = self.pous.iter().filter(|it| it.owner.is_none()).flat_map(|it| &it.ast.bases).collect();
         for path in written {
@@ -195,8 +195,8 @@ impl<'s> Declarations<'s> {
         if self.names.inner_named(space, name.text) && !matches!(entry, Entry::Global(_)) {
             let full = self.names.in_full(space, name.text);
             self.report(
-                Diagnostic::new(Code::E0103, name.span, format!("`{full}` is a NAMESPACE already"))
-                    .label("a namespace and what is beside it have different names"),
+                Diagnostic::new(Code::E0103, name.span, format!("`{full}` is already a NAMESPACE"))
+                    .label("another declaration cannot have the name of a namespace"),
             );
             return;
         }
@@ -221,7 +221,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// What is in the way of a new name. A global may have the name of a type, `motor : Motor`, and two
-    /// lists may have variables of one name; but a list's is not hidden by what the root has.
+    /// lists may have variables with the same name; but one in the root does not hide a list's.
     fn clash(&self, space: SpaceId, name: &str, entry: Entry) -> Option<Entry> {
         // What is named after its list alone is in nobody's way.
         let is_seen = self.names.is_list(space) && !self.names.is_qualified(space);
@@ -254,9 +254,9 @@ impl<'s> Declarations<'s> {
         });
     }
 
-    /// Reports a name with underlines where the standard has none.
+    /// Reports a name with underscores where the standard forbids them.
     pub(super) fn check_spelling(&mut self, name: ast::Name<'s>) {
-        // The compiler's own name, one of Logix that is no name here, or one that SCL has in quotes.
+        // The compiler's own name, one of Logix that is not a name here, or one that SCL has in quotes.
         let source = self.log.sources.get(name.span.file);
         let is_logix = self.dialect(name.span) == Dialect::Logix;
         let is_made = source.is_assembled() && (is_logix || !source.is_verbatim(name.span));
@@ -264,9 +264,9 @@ impl<'s> Declarations<'s> {
             return;
         }
         let wrong = if name.text.contains("__") {
-            "two underlines in a row"
+            "two underscores in a row"
         } else if name.text.ends_with('_') && self.dialect(name.span) != Dialect::Codesys {
-            "an underline at the end"
+            "an underscore at the end"
         } else {
             return;
         };

@@ -1,5 +1,5 @@
-//! Lines that are longer than the columns of a [`Location`](staunch_ir::Location): what lies beyond is all at the last one. Tables
-//! that find a declaration by its place do not tell two of these apart, so the second is refused.
+//! Lines that are longer than the columns of a [`Location`](staunch_ir::Location): everything after that is at the last one. Tables
+//! that find a declaration by its place cannot distinguish two of these, so the second is refused.
 
 use super::starts::members;
 use crate::Span;
@@ -26,7 +26,7 @@ impl<'s> Declarations<'s> {
         for place in places {
             let at = self.location(place);
             if at.column == u16::MAX && !seen.insert((at.file, at.line)) {
-                self.not_supported(place, "a second declaration beyond column 65534 of its line");
+                self.not_supported(place, "a second declaration after column 65534 of its line");
             }
         }
     }

@@ -1,5 +1,5 @@
 //! Addresses of CONSTANTs, in dialects that give them: a constant is its value wherever it is read, so that what has an
-//! address is a copy of it, which the globals hold. What is written there changes no constant.
+//! address is a copy of it, which the globals hold. Writing to it changes no constant.
 
 use crate::ast;
 use crate::names::{Entry, Found, Meaning, Sense};

@@ -94,7 +94,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Reports what only the declaration of a global says: its value, and that it is no constant.
+    /// Reports what only the declaration of a global may say: its value, and that it is not a constant.
     fn check_external(&mut self, block: &ast::VarBlock<'s>, decl: &ast::VarDecl<'s>, global: &Variable<'s>) {
         if let Some(initial) = &decl.initial {
             let whole = Span { start: decl.ty.span.end, ..initial.span };
@@ -110,7 +110,7 @@ impl<'s> Declarations<'s> {
             let message = format!("the global `{}` is not CONSTANT", global.name.text);
             self.report(
                 Diagnostic::new(Code::E0405, constant, message)
-                    .label("this says that it never changes")
+                    .label("here it is declared CONSTANT")
                     .other(global.name.span, "the global variable")
                     .help("delete CONSTANT here, or declare it in VAR_GLOBAL CONSTANT"),
             );

@@ -1,4 +1,4 @@
-//! Generic FUNCTIONs and METHODs: which there are, and what their declarations have to say so that each call tells the types.
+//! Generic FUNCTIONs and METHODs: which there are, and what their declarations must contain so that each call determines the types.
 
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
@@ -18,7 +18,7 @@ impl<'s> Declarations<'s> {
         for slot in 0..self.pous.len() {
             let pou = self.pous[slot].ast;
             let owner = self.pous[slot].owner.map(|it| self.pous[it].ast);
-            // What is in an INTERFACE has no routine of its own, and what nobody wrote has no call that tells types.
+            // A METHOD of an INTERFACE has no routine of its own, and nobody calls one that was not written.
             let is_method =
                 owner.is_some_and(|it| it.kind != PouKind::Interface) && pou.modifiers.is_abstract.is_none();
             if pou.kind == PouKind::Function || pou.kind == PouKind::Method && is_method {
@@ -105,26 +105,26 @@ impl<'s> Declarations<'s> {
         let error = |message: String| Diagnostic::new(Code::E0411, name.span, message);
         let is_seen = kind.is_none_or(|it| matches!(it, VarKind::Input | VarKind::Output | VarKind::InOut));
         if is_seen && self.word(ty).is_none() {
-            let error = error(format!("`{}` is the type of a whole parameter or result", name.text));
+            let error = error(format!("`{}` can only be the type of a whole parameter or result", name.text));
             let help = if self.dialect(name.span) == Dialect::Codesys {
-                "write a FUNCTION with a name of its own for each type"
+                "write a FUNCTION with its own name for each type"
             } else {
-                "write a FUNCTION of this name for each type: a call means the one that its arguments fit"
+                "write a FUNCTION with the same name for each type: a call uses the one that fits its arguments"
             };
-            return Some(error.label("this is a part of one").help(help));
+            return Some(error.label("here it is a part of one").help(help));
         }
         if let Some(VarKind::Stat | VarKind::External | VarKind::Global) = kind {
             let word = self.log.sources.text(block.map_or(name.span, |it| it.span));
-            let error = error(format!("a variable of {word} has one type, in all calls"));
-            return Some(error.label(format!("`{}` is another one in each", name.text)));
+            let error = error(format!("a variable of {word} must have the same type in all calls"));
+            return Some(error.label(format!("`{}` may differ from call to call", name.text)));
         }
         if kind == Some(VarKind::InOut) && block.is_some_and(|it| it.constant.is_some()) {
-            let error = error(format!("a VAR_IN_OUT CONSTANT is not of type {}", name.text));
-            return Some(error.label("a generic type belongs to an input here").help("declare it in VAR_INPUT"));
+            let error = error(format!("a VAR_IN_OUT CONSTANT cannot have the type {}", name.text));
+            return Some(error.label("only an input can have a generic type here").help("declare it in VAR_INPUT"));
         }
         if !told.contains(&class) {
-            let error = error(format!("no call tells which type `{}` is", name.text));
-            let error = error.label("no input and no in-out is of this type");
+            let error = error(format!("a call cannot determine which type `{}` is", name.text));
+            let error = error.label("no VAR_INPUT or VAR_IN_OUT has this type");
             return Some(match told.first() {
                 Some(told) => {
                     error.help(format!("write `{}`, or give the FUNCTION an input of this type", told.name()))
@@ -148,9 +148,9 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(
                 Code::E0411,
                 name.span,
-                format!("`{}` is a generic type, of a FUNCTION or a METHOD with a body only", name.text),
+                format!("`{}` is a generic type, which only a FUNCTION or a METHOD with a body can use", name.text),
             )
-            .label(format!("nothing says which type {what} is here"))
+            .label(format!("nothing determines which type {what} is here"))
             .help("write the type that is meant, or make this a FUNCTION whose inputs are generic"),
         );
         None

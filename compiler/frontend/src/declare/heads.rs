@@ -48,16 +48,18 @@ impl<'s> Declarations<'s> {
         let ast::Modifiers { access, is_final, is_abstract, again, .. } = pou.modifiers;
         let name = pou.name.text;
         if let (Some(again), Some((first, span))) = (again, access) {
-            let error = Diagnostic::new(Code::E0403, again, format!("`{name}` is {} already", first.word()));
-            self.report(error.label("one word says from where it is used: delete this one").other(span, "said here"));
+            let error = Diagnostic::new(Code::E0403, again, format!("`{name}` is already {}", first.word()));
+            self.report(
+                error.label("only one access specifier is allowed: delete this one").other(span, "the first one"),
+            );
         }
         let private = access.filter(|it| it.0 == ast::Access::Private && pou.kind != PouKind::Interface);
         let other = is_final.map(|it| ("FINAL", it)).or(private.map(|it| ("PRIVATE", it.1)));
         if let (Some(span), Some((word, other))) = (is_abstract, other) {
             self.report(
                 Diagnostic::new(Code::E0403, span, format!("`{name}` is ABSTRACT and {word}"))
-                    .label("heirs are to complete it")
-                    .other(other, "and may not here"),
+                    .label("an ABSTRACT declaration must be overridden")
+                    .other(other, "this forbids it"),
             );
         }
         for (at, again) in pou.implements.iter().enumerate() {
@@ -81,10 +83,13 @@ impl<'s> Declarations<'s> {
         }
         if seen.contains(&slot) {
             let error = Diagnostic::new(Code::E0402, pou.name.span, format!("`{}` extends itself", pou.name.text));
-            self.report(error.label("it comes back to this INTERFACE"));
+            self.report(error.label("its EXTENDS leads back to itself"));
         }
         let mut refuse = |span, what: &str| {
-            self.report(Diagnostic::new(Code::E0403, span, what).label("an INTERFACE has heads alone: delete it"));
+            self.report(
+                Diagnostic::new(Code::E0403, span, what)
+                    .label("an INTERFACE only declares METHODs and PROPERTYs: delete it"),
+            );
         };
         if let Some(block) = pou.blocks.first() {
             refuse(block.span, "an INTERFACE has no variables");
@@ -120,7 +125,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Whether two heads of one name are not those of one routine, nor of two overloads.
+    /// Whether two heads with the same name belong neither to one routine nor to two overloads.
     fn is_another_head(&self, first: usize, second: usize) -> bool {
         let is_overload = || self.has_overloads(second) && !self.have_same_parameters(first, second);
         self.pous[first].ast.kind == self.pous[second].ast.kind && !self.is_alike(first, second) && !is_overload()
@@ -132,9 +137,9 @@ impl<'s> Declarations<'s> {
         let [first, second] = heads.map(|it| self.pous[it].ast.name.span);
         self.report(
             Diagnostic::new(Code::E0403, name.span, message)
-                .label("no class can have both: the parameters and the results are to be the same")
+                .label("no class can implement both: their parameters and results must be the same")
                 .other(first, "declared here")
-                .other(second, "and here with another head"),
+                .other(second, "and declared differently here"),
         );
     }
 
@@ -174,12 +179,12 @@ impl<'s> Declarations<'s> {
             Found::One(Meaning::Declared(entry)) => {
                 let declared = self.span_of(entry);
                 self.report(
-                    error(format!("`{}` is no INTERFACE", name.text))
+                    error(format!("`{}` is not an INTERFACE", name.text))
                         .other(declared, "declared here")
-                        .help("a FUNCTION_BLOCK that is to be had is after EXTENDS, before IMPLEMENTS"),
+                        .help("to inherit from a FUNCTION_BLOCK, name it after EXTENDS, before IMPLEMENTS"),
                 );
             }
-            Found::One(_) => self.report(error(format!("`{}` is no INTERFACE", name.text))),
+            Found::One(_) => self.report(error(format!("`{}` is not an INTERFACE", name.text))),
             Found::Nothing if self.names.root(name.text).is_none() && self.names.holders(name.text).is_empty() => {
                 let names = self.table.interfaces.slots.iter().map(|it| self.pous[*it].ast.name.text);
                 let near = nearest(name.text, names).map(str::to_owned);
@@ -214,7 +219,7 @@ impl<'s> Declarations<'s> {
         if let Some((access, span)) = routine.and_then(|it| self.hidden_by(it)) {
             self.report(
                 Diagnostic::new(Code::E0403, span, format!("`{title}` is {}", access.word()))
-                    .label("what an INTERFACE wants is called from everywhere")
+                    .label("the METHODs and PROPERTYs of an INTERFACE must be PUBLIC")
                     .other(wanted.span, "declared here"),
             );
             return;
@@ -224,8 +229,8 @@ impl<'s> Declarations<'s> {
             None if self.has_unknown_base(class) => return,
             Some(routine) => {
                 let span = self.pous[routine].ast.name.span;
-                Diagnostic::new(Code::E0403, span, format!("`{title}` has another head"))
-                    .label("the parameters and the result are those of the INTERFACE")
+                Diagnostic::new(Code::E0403, span, format!("this does not match the declaration of `{title}`"))
+                    .label("the parameters and the result must be those of the INTERFACE")
             }
             None if self.pous[class].ast.modifiers.is_abstract.is_some() || wanted.text.is_empty() => return,
             None => {
@@ -241,8 +246,8 @@ impl<'s> Declarations<'s> {
                     | PouKind::Function
                     | PouKind::Test => format!("`{title}`"),
                 };
-                Diagnostic::new(Code::E0403, name.span, format!("`{}` does not have {what}", name.text))
-                    .label("it needs every METHOD and PROPERTY of the INTERFACEs that it IMPLEMENTS")
+                Diagnostic::new(Code::E0403, name.span, format!("`{}` must implement {what}", name.text))
+                    .label("it must have every METHOD and PROPERTY of the INTERFACEs that it IMPLEMENTS")
                     .help("declare it here, or make this ABSTRACT")
             }
         };
@@ -274,9 +279,13 @@ impl<'s> Declarations<'s> {
             let Some(old) = old else { continue };
             let (new, old) = (self.pous[new].ast.name, self.pous[old].ast.name);
             self.report(
-                Diagnostic::new(Code::E0403, new.span, format!("`{}` overrides another head", new.text))
-                    .label("the parameters and the result are those of what is overridden")
-                    .other(old.span, "overridden here"),
+                Diagnostic::new(
+                    Code::E0403,
+                    new.span,
+                    format!("`{}` does not match the declaration that it overrides", new.text),
+                )
+                .label("the parameters and the result must be the same")
+                .other(old.span, "overridden here"),
             );
         }
     }

@@ -11,7 +11,7 @@ use rustc_hash::FxHashSet;
 use staunch_ir::{Address, Const, Elementary, Field, FieldId, Place, Retain, Root, Section, Type, View};
 use std::cmp::Reverse;
 
-/// What lies at an address, among others.
+/// One of the uses of an address.
 #[derive(Clone, Copy)]
 struct Member {
     first: Use,
@@ -75,8 +75,8 @@ impl<'s> Declarations<'s> {
                 continue;
             }
             self.report(
-                Diagnostic::new(Code::W0410, it.span, "two variables lie on overlapping addresses")
-                    .label("this address shares bits with another one: what is assigned to one is read from both")
+                Diagnostic::new(Code::W0410, it.span, "the addresses of two variables overlap")
+                    .label("this address shares bits with another one: assigning to one variable changes both")
                     .other(widest.span, "the other address"),
             );
         }
@@ -258,7 +258,7 @@ impl<'s> Declarations<'s> {
 
     fn report_two_starts(&mut self, span: Span, keeper: &Field) {
         let mut error = Diagnostic::new(Code::E0409, span, "two initial values for the same bits")
-            .label("another declaration says that they start otherwise")
+            .label("another declaration gives them another value")
             .help("give the value in one of the declarations");
         // What nobody has declared has no place of its own.
         if keeper.section != Section::Internal {

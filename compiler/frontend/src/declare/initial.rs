@@ -32,7 +32,7 @@ impl<'s> Declarations<'s> {
         match (&initial.kind, target.ty) {
             (InitialKind::Fields(fields), _) if fields.is_empty() && !self.dialect(initial.span).has_empty_values() => {
                 self.report(
-                    Diagnostic::new(Code::E0206, initial.span, "this gives a value to nothing")
+                    Diagnostic::new(Code::E0206, initial.span, "this initial value is empty")
                         .label("expected `(member := value)`")
                         .help("delete the initial value: the variable starts with that of its type"),
                 );
@@ -68,7 +68,7 @@ impl<'s> Declarations<'s> {
     fn report_assigned_reference(&mut self, expr: &ast::Expr<'s>) {
         let text = self.log.sources.text(expr.span);
         let error = Diagnostic::new(Code::E0211, expr.span, "a REFERENCE TO is set by `REF=`")
-            .label("this is what it is to refer to")
+            .label("this is the variable to refer to")
             .help(format!("write `REF= {text}`"));
         let before = &self.log.sources.get(expr.span.file).text[..index(expr.span.start)];
         let sign = before.trim_end().strip_suffix(":=").and_then(|it| u32::try_from(it.len()).ok());
@@ -279,7 +279,7 @@ impl<'s> Declarations<'s> {
     /// A CONSTANT is its value, in all instances.
     fn refuse_constant_of_instance(&mut self, name: ast::Name<'s>, field: &Field) {
         let mut error = Diagnostic::new(Code::E0501, name.span, format!("`{}` is a CONSTANT", name.text))
-            .label("it has the value of its declaration in all instances")
+            .label("it has the value of its declaration in every instance")
             .help("declare it in VAR_INPUT CONSTANT, or in VAR, where each instance has its own");
         if field.location != Location::default() {
             error = error.other(self.log.name_at(field.location), "declared here");
@@ -333,7 +333,7 @@ impl<'s> Declarations<'s> {
     fn given_twice(&mut self, name: ast::Name<'s>) {
         self.report(
             Diagnostic::new(Code::E0304, name.span, format!("`{}` is given twice", name.text))
-                .label("it has a value already"),
+                .label("it already has a value"),
         );
     }
 }

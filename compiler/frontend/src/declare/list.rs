@@ -15,7 +15,7 @@ pub(super) struct Lists<'s> {
     heads: Vec<u32>,
     /// Where an attribute says that a list's names are used after the list's alone.
     qualified: Vec<u32>,
-    /// Where the last unit that is no list ends.
+    /// Where the last unit that is not a list ends.
     end: u32,
 }
 
@@ -28,7 +28,7 @@ impl<'s> Lists<'s> {
             if declarations.dialect(pragma.span) != Dialect::Codesys {
                 declarations.names.nameless_lists.extend(quoted(pragma.text).map(Key));
                 declarations.report(
-                    Diagnostic::new(Code::W0102, pragma.span, "lists of global variables have names in codesys")
+                    Diagnostic::new(Code::W0102, pragma.span, "a list of global variables has a name only in codesys")
                         .label("it has no effect")
                         .help("start the file with `{dialect 'codesys'}`"),
                 );
@@ -82,7 +82,7 @@ impl<'s> Lists<'s> {
     }
 }
 
-/// Where what a declaration says of itself begins and ends; END_… may be behind it.
+/// Where the text of a declaration begins and ends; END_… may follow it.
 fn place(item: &ast::Item<'_>) -> Span {
     let between = |first: Span, last: Option<Span>| last.map_or(first, |it| first.to(it));
     match item {

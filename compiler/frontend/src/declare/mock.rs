@@ -1,4 +1,4 @@
-//! The globals behind the FUNCTIONs that a unit test replaces.
+//! The globals for the FUNCTIONs that a unit test replaces.
 
 use crate::ast::{self, PouKind};
 use crate::names::{Entry, Found, Meaning, Sense};

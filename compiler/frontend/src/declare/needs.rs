@@ -118,7 +118,7 @@ impl<'s> Needs<'_, 's> {
     }
 
     fn declared(&mut self, decl: &ast::VarDecl<'s>) {
-        // What lies at the same address has to have the same type.
+        // All variables at the same address must have the same type.
         let located = decl.address.and_then(|it| self.declarations.addresses.global_at(it));
         self.found.extend(located.map(Entry::Global).map(Step::Declaration));
         self.spec(&decl.ty);
@@ -228,7 +228,7 @@ impl<'s> Needs<'_, 's> {
         }
     }
 
-    /// A global variable, or the enumerations that have an enumerator of that name.
+    /// A global variable, or the enumerations that have an enumerator with this name.
     fn value(&mut self, name: ast::Name<'s>) {
         let key = Key(name.text);
         if self.own.contains(&key) {

@@ -1,4 +1,4 @@
-//! FUNCTIONs of one name, and METHODs of one class and name, as Siemens AX has them: they are told apart by their
+//! FUNCTIONs with the same name, and METHODs of one class with the same name, as in Siemens AX: they differ in their
 //! parameters.
 
 use super::collect::declared_twice;
@@ -38,7 +38,7 @@ impl<'s> Declarations<'s> {
         pou.kind == kind && self.dialect(pou.name.span).has_overloads()
     }
 
-    /// Reports those that nothing tells apart from an earlier one.
+    /// Reports those that do not differ from an earlier one.
     pub(super) fn check_overloads(&mut self) {
         let mut firsts: Vec<_> = self.overloads.sets.keys().copied().collect();
         firsts.sort_unstable();

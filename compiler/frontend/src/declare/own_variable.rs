@@ -127,7 +127,7 @@ impl<'s> Declarations<'s> {
             let owner = owner_of(pou, decl);
             self.report(
                 Diagnostic::new(Code::W0404, decl.span, format!("the CONSTANT `{owner}` has no value"))
-                    .label("it keeps its type's initial value")
+                    .label("it has its type's initial value")
                     .help("give it one: `name : TYPE := value;`"),
             );
         }
@@ -167,7 +167,7 @@ impl<'s> Declarations<'s> {
         if is_result {
             self.report(
                 Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
-                    .label(format!("inside the {} its name is its result", pou.kind.word()))
+                    .label(format!("in the body of the {} its name means its result", pou.kind.word()))
                     .other(pou.name.span, "first declared here"),
             );
         }
@@ -217,7 +217,7 @@ impl<'s> Declarations<'s> {
         };
         let block = article(info.name);
         self.report(
-            Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts anew at each call"))
+            Diagnostic::new(Code::W0303, decl.span, format!("{block} in {place} starts again at each call"))
                 .label(format!("so {what}"))
                 .help(help),
         );
@@ -228,7 +228,7 @@ impl<'s> Declarations<'s> {
         let Some(initial) = &decl.initial else { return };
         self.report(
             Diagnostic::new(Code::E0403, initial.span, "an array of any bounds has no initial value")
-                .label("how many elements it has is known in a call only"),
+                .label("its number of elements is known only in a call"),
         );
     }
 }

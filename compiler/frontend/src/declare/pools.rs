@@ -37,13 +37,9 @@ impl<'s> Declarations<'s> {
     fn may_have_pool(&mut self, pou: &ast::Pou<'s>, pool: Span) -> bool {
         if let Some(span) = pou.modifiers.is_abstract {
             self.report(
-                Diagnostic::new(
-                    Code::E0413,
-                    pool,
-                    format!("`{}` is ABSTRACT: there are no objects of it", pou.name.text),
-                )
-                .label("a pool is for a FUNCTION_BLOCK that extends it")
-                .other(span, "declared so here"),
+                Diagnostic::new(Code::E0413, pool, format!("`{}` is ABSTRACT: it has no objects", pou.name.text))
+                    .label("declare the pool for a FUNCTION_BLOCK that extends it")
+                    .other(span, "declared so here"),
             );
             return false;
         }
@@ -70,10 +66,10 @@ impl<'s> Declarations<'s> {
             self.refuse_pool(pool, decl.name);
         }
         if let Some(initial) = decl.initial.as_ref().filter(|_| is_it && !matches!(decl.ty.kind, TypeKind::Struct(_))) {
-            let message = format!("the objects of the pool of `{}` have no initial value of their own", decl.name.text);
+            let message = format!("the objects in the pool of `{}` cannot have an initial value", decl.name.text);
             self.report(
                 Diagnostic::new(Code::E0413, initial.span, message)
-                    .label("`__NEW` names their type by any of its names")
+                    .label("the pool serves every name of their type")
                     .help("delete it, and assign the value after `__NEW`"),
             );
             return false;
@@ -90,8 +86,8 @@ impl<'s> Declarations<'s> {
                     pool,
                     format!("`{}` is another name of {ty}, which has a pool", name.text),
                 )
-                .label("one pool has all objects of a type")
-                .help("delete this pragma, and count these objects there"),
+                .label("a type has one pool")
+                .help("delete this pragma, and add the number of these objects there"),
             );
             return false;
         }
@@ -108,7 +104,7 @@ impl<'s> Declarations<'s> {
 
     fn refuse_pool(&mut self, pool: Span, name: ast::Name<'s>) {
         self.report(
-            Diagnostic::new(Code::E0413, pool, format!("`{}` has no use for a pool", name.text))
+            Diagnostic::new(Code::E0413, pool, format!("`{}` cannot have a pool", name.text))
                 .label("a pool is for a FUNCTION_BLOCK, or a TYPE that is a STRUCT, an ARRAY or another name of a type")
                 .other(name.span, "this is none of these"),
         );
@@ -117,9 +113,9 @@ impl<'s> Declarations<'s> {
     fn declare_pool(&mut self, title: &str, name: ast::Name<'s>, object: Type, pool: ast::Pool) -> Option<Pool> {
         let Some(count) = pool.count.filter(|it| (1..=MOST).contains(it)) else {
             self.report(
-                Diagnostic::new(Code::E0413, pool.span, format!("a pool has 1 to {MOST} objects"))
-                    .label("this says another number, or none")
-                    .help("write the most objects that there are at a time: `{pool 16}`"),
+                Diagnostic::new(Code::E0413, pool.span, format!("a pool can have 1 to {MOST} objects"))
+                    .label("this is another number, or none")
+                    .help("write the largest number of objects at a time: `{pool 16}`"),
             );
             return None;
         };

@@ -127,7 +127,7 @@ impl<'s> Declarations<'s> {
             retain: staunch_ir::Retain::Inherited,
             constant: false,
             address: None,
-            doc: Some("It has no variables, and is somewhere all the same".to_owned()),
+            doc: Some("Has no variables, but needs an address".to_owned()),
             location: self.location(pou.name.span),
         }
     }
@@ -170,8 +170,8 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The CONSTANTs of a POU by their values: a declaration before them may use them. What is wrong
-    /// with one of them is reported when its own turn comes, but what it needs was resolved for good.
+    /// The CONSTANTs of a POU by their values: a declaration before them may use them. A mistake in
+    /// one of them is reported when its own turn comes, but what it needs is resolved for good.
     pub(super) fn early_constants(&mut self, pou: &'s ast::Pou<'s>, scope: Scope<'s>) -> Scope<'s> {
         let mut scope = Rc::new(scope);
         let counted = self.table.constants;
@@ -179,7 +179,7 @@ impl<'s> Declarations<'s> {
             |it: &&'s ast::VarDecl<'s>| matches!(it.ty.kind, ast::TypeKind::Named(_) | ast::TypeKind::String { .. });
         let mut waiting: Vec<_> =
             pou.constants().flat_map(|block| block.vars.iter().filter(named).map(move |decl| (block, decl))).collect();
-        // One constant may use another that is declared after it, so rounds go on while they help.
+        // One constant may use another that is declared after it, so rounds continue while they help.
         loop {
             let before = waiting.len();
             waiting.retain(|(block, decl)| {
@@ -254,7 +254,7 @@ impl<'s> Declarations<'s> {
             };
             self.report(
                 Diagnostic::new(Code::E0403, span, format!("{what} cannot be RETAIN"))
-                    .label("it has no value of its own to keep over a restart")
+                    .label("it has no value of its own to keep through a restart")
                     .help("declare the variable in VAR RETAIN"),
             );
         }
@@ -299,7 +299,7 @@ impl<'s> Declarations<'s> {
             let word = pou.kind.word();
             self.report(
                 Diagnostic::new(Code::E0403, block.span, format!("{} has no VAR_INST", article(word)))
-                    .label("it is for what a METHOD keeps in its instance")
+                    .label("VAR_INST is for variables of a METHOD that are kept in the instance")
                     .help("write `VAR`"),
             );
             decl.names.iter().for_each(|name| builder.refuse(*name));
@@ -398,7 +398,7 @@ impl<'s> Declarations<'s> {
             builder.params[id.index()].bounds = builder.bounds(name.text, &self.program, resolved.ty);
         }
         if let (Some((_, span)), true) = (decl.edge, block.kind != VarKind::Input || pou.kind.is_function()) {
-            self.error(Code::E0403, span, "R_EDGE and F_EDGE belong to the inputs of a FUNCTION_BLOCK or PROGRAM");
+            self.error(Code::E0403, span, "R_EDGE and F_EDGE are only for inputs of a FUNCTION_BLOCK or PROGRAM");
         }
         Some(place)
     }

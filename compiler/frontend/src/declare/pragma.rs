@@ -122,10 +122,10 @@ const WITHOUT_EFFECT: [(&str, &str); 8] = [
     ("TcPersistent", "declare the variable in VAR PERSISTENT"),
     ("TcInitOnReset", "declare the variable without RETAIN and PERSISTENT"),
     ("is_connected", "give the input an initial value that no caller gives, and compare with it"),
-    ("global_init_slot", "start what others need where the first PROGRAM begins"),
+    ("global_init_slot", "initialise what others need at the start of the first PROGRAM"),
     ("init_namespace", "give the STRING its initial value: `:= 'Library'`"),
-    ("call_after_global_init_slot", "call it where the first PROGRAM begins"),
-    ("call_before_global_exit_slot", "call it where the program ends"),
+    ("call_after_global_init_slot", "call it at the start of the first PROGRAM"),
+    ("call_before_global_exit_slot", "call it at the end of the program"),
 ];
 
 impl Log<'_> {
@@ -151,7 +151,7 @@ impl Log<'_> {
             };
             if let Some((_, first)) = found {
                 self.report(
-                    Diagnostic::new(Code::E0106, pragma.span, "a file has one dialect")
+                    Diagnostic::new(Code::E0106, pragma.span, "a file can have only one dialect")
                         .label("a second dialect pragma")
                         .other(first, "the first one")
                         .help("keep one of them; a block of another system is named in full, `CODESYS.CTU`"),
@@ -203,13 +203,9 @@ impl Log<'_> {
         if let Some((operator, form)) = crate::lex::miswritten(pragma.text.trim().get(word.len()..).unwrap_or_default())
         {
             self.report(
-                Diagnostic::new(
-                    Code::E0001,
-                    pragma.span,
-                    format!("`{operator}` in the pragma `{word}` has another form"),
-                )
-                .label(format!("expected `{form}`"))
-                .help(format!("write `{form}`")),
+                Diagnostic::new(Code::E0001, pragma.span, format!("wrong form of `{operator}` in the pragma `{word}`"))
+                    .label(format!("expected `{form}`"))
+                    .help(format!("write `{form}`")),
             );
             return;
         }
@@ -225,12 +221,14 @@ impl Log<'_> {
             (None, None) => "this condition".to_owned(),
         };
         let help = match of_declared {
-            Some(&"type") => "of a FUNCTION_BLOCK or PROGRAM ask `defined(pou: …)`",
-            Some(_) | None => "ask for a name that `{define NAME}`, or the project, defines where that holds",
+            Some(&"type") => "for a FUNCTION_BLOCK or PROGRAM, write `defined(pou: …)`",
+            Some(_) | None => {
+                "where the condition holds, define a name with `{define NAME}` or in the project, and test that"
+            }
         };
         let message = format!("{what} in the pragma `{word}` is not supported yet");
         self.report(
-            Diagnostic::new(Code::E0902, pragma.span, message).label("nothing here says whether that holds").help(help),
+            Diagnostic::new(Code::E0902, pragma.span, message).label("whether it holds is not known here").help(help),
         );
     }
 
@@ -239,8 +237,8 @@ impl Log<'_> {
         let text = pragma.text.trim().get(word.len()..).unwrap_or_default().trim();
         let text = text.strip_prefix('\'').and_then(|it| it.strip_suffix('\''));
         let (code, label) = match word {
-            "error" => (Code::E0110, "the program says that it is not to be compiled so"),
-            _ => (Code::W0103, "the program says so itself"),
+            "error" => (Code::E0110, "an `{error}` pragma of the program"),
+            _ => (Code::W0103, "a `{warning}` pragma of the program"),
         };
         if text.is_some() || word == "error" {
             let text = text.filter(|it| !it.trim().is_empty()).unwrap_or("`{error}`");
@@ -285,7 +283,7 @@ impl Log<'_> {
         };
         if !file.items.iter().any(is_of) {
             self.report(
-                Diagnostic::new(Code::E0319, span, "`{external}` belongs to nothing")
+                Diagnostic::new(Code::E0319, span, "`{external}` is not attached to anything")
                     .label("expected before a FUNCTION or FUNCTION_BLOCK, alone or with a symbol")
                     .help("write `{external}` or `{external 'symbol'}` directly before the unit"),
             );
@@ -304,7 +302,7 @@ impl Log<'_> {
         };
         if !file.items.iter().any(is_of) {
             self.report(
-                Diagnostic::new(Code::E0413, span, "this pool belongs to nothing")
+                Diagnostic::new(Code::E0413, span, "this pool is not attached to a type")
                     .label("expected before a FUNCTION_BLOCK, or a TYPE that is a STRUCT")
                     .help("write it directly before the type of the objects that `__NEW` makes"),
             );

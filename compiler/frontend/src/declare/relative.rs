@@ -1,7 +1,7 @@
 //! Relative locations of a structure's members, `AT %B4`, `AT %X0.3`: bytes and bits from its start.
 //!
-//! They say how the structure lies in the memory of the system that the source is from, which no program can see:
-//! they are checked, and a structure that has them lies in the process image nowhere. In a UNION they say which bytes are shared.
+//! They give the structure's layout in the memory of the system that the source is from, which no program can see:
+//! they are checked, and a structure that has them cannot be in the process image. In a UNION they say which bytes are shared.
 
 use crate::dialect::Dialect;
 use crate::types::declarations::Declarations;
@@ -53,7 +53,7 @@ impl<'s> Declarations<'s> {
         for decl in members.iter().filter(|it| self.location_of(it).is_none()).collect::<Vec<_>>() {
             self.report(
                 Diagnostic::new(Code::E0409, decl.span, "this member has no location")
-                    .label("where others have one, each has")
+                    .label("if one member has a location, every member must have one")
                     .other(first, "the location of another member"),
             );
         }
@@ -72,7 +72,7 @@ impl<'s> Declarations<'s> {
                 self.report(
                     Diagnostic::new(Code::E0409, extent.span, "two members have the same place")
                         .label("this one begins before the other ends")
-                        .other(last.span, format!("the next one can begin at {end}")),
+                        .other(last.span, format!("the next member can begin at {end}")),
                 );
             }
             if last.is_none_or(|it| it.end < extent.end) {
@@ -102,8 +102,12 @@ impl<'s> Declarations<'s> {
             self.not_supported(address.span, "the address of a structure's member");
         } else if offset.is_none() {
             self.report(
-                Diagnostic::new(Code::E0409, address.span, format!("`{}` is no place in a structure", address.text))
-                    .help("write a byte, `%B4`, or a byte and a bit from 0 to 7, `%X4.0`"),
+                Diagnostic::new(
+                    Code::E0409,
+                    address.span,
+                    format!("`{}` is not a location in a structure", address.text),
+                )
+                .help("write a byte, `%B4`, or a byte and a bit from 0 to 7, `%X4.0`"),
             );
         }
         offset
@@ -128,7 +132,7 @@ impl<'s> Declarations<'s> {
         if offset.is_bit && !is_bool {
             let found = self.program.type_name(ty);
             self.report(
-                Diagnostic::new(Code::E0409, address.span, format!("`{}` is a bit, this is {found}", address.text))
+                Diagnostic::new(Code::E0409, address.span, format!("`{}` is a bit, but this is {found}", address.text))
                     .help(format!("write the byte where it begins: `%B{}`", offset.bit / 8)),
             );
         }

@@ -15,13 +15,13 @@ impl<'s> Declarations<'s> {
     pub(super) fn has_flat_rows(&mut self, spec: &TypeSpec<'s>, initial: &Initial<'s>) -> bool {
         let Some(found) = self.flat_row(spec, initial, MAX_DEPTH) else { return false };
         let text = self.log.sources.text(found.span);
-        let error = Diagnostic::new(Code::E0206, found.span, "each element of this array is an array itself");
-        let help = format!("give each element brackets of its own: `[[{text}, …], […]]`");
+        let error = Diagnostic::new(Code::E0206, found.span, "each element of this array is itself an array");
+        let help = format!("put the values of each element in brackets: `[[{text}, …], […]]`");
         self.report(error.label("this is a value of an inner array").help(help));
         true
     }
 
-    /// The first value that stands where a list is expected.
+    /// The first value where a list is expected.
     fn flat_row<'a>(&self, spec: &TypeSpec<'s>, initial: &'a Initial<'s>, depth: usize) -> Option<&'a Expr<'s>> {
         let depth = depth.checked_sub(1)?;
         match (&spec.kind, &initial.kind) {

@@ -1,10 +1,10 @@
-//! What a CONFIGURATION does beside running a PROGRAM: it connects parameters, `Main(x := g)`, a TASK's SINGLE
+//! What a CONFIGURATION does in addition to running a PROGRAM: it connects parameters, `Main(x := g)`, a TASK's SINGLE
 //! waits for an edge, with an INTERVAL or without, and a VAR_CONFIG gives variables of instances their addresses and initial values. Such a run is
 //! written as a PROGRAM of its own: it holds the other one as an instance, and calls it. Where nothing lists
 //! PROGRAMs, a VAR_CONFIG finds the one run of each by its PROGRAM's name.
 //!
-//! What VAR_CONFIG binds is a variable of its instance, into which the run copies what lies at the address before
-//! the call; what is no input is copied back after it.
+//! A variable that VAR_CONFIG binds belongs to its instance; the run copies the value at the address into it before
+//! the call, and back after it if it is not an input.
 //!
 //! A PROGRAM that has one instance among the globals, since tasks of TwinCAT's share it or bodies name it, has runs that
 //! hold nothing and call it by its name.
@@ -67,7 +67,7 @@ pub(crate) enum Listing {
     Several,
 }
 
-/// How the PROGRAM of a name is listed. What is connected with variables, or waits for a SINGLE, has an instance of its own.
+/// How the PROGRAM of a name is listed. One that is connected to variables, or waits for a SINGLE, has its own instance.
 pub(crate) fn listing(files: &[ast::File<'_>], sources: &Sources, program: Key<'_>) -> Listing {
     let all = listed(files);
     if all.is_empty() {

@@ -36,7 +36,7 @@ const LONG_CAPACITY: i128 = 65534;
 const OF_SIMATIC: [(&str, &str); 4] = [
     ("S5TIME", "write `TIME`, with literals `T#2s`: the standard's timers take it, and it counts exactly"),
     ("DTL", "write `LDT`, or `DT` for seconds; `SPLIT_LDT` and `CONCAT_LDT` give and take its parts"),
-    ("VARIANT", "write a FUNCTION of this name for each type, or parameters of `ANY` or `ANY_NUM`"),
+    ("VARIANT", "write a FUNCTION with the same name for each type, or parameters of `ANY` or `ANY_NUM`"),
     ("IEC_COUNTER", "write the counter's type: `S7.CTU`, `S7.CTD` or `S7.CTUD`"),
 ];
 
@@ -127,7 +127,7 @@ impl<'s> Declarations<'s> {
         let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
         self.check_construction(decl, resolved.ty);
         if let Some(initial) = &decl.initial {
-            // A refused value has been reported; the type is known all the same.
+            // A refused value has been reported; the type is known anyway.
             let is_flat = self.has_flat_rows(&decl.ty, initial);
             let value = if is_flat { None } else { self.initial(initial, &resolved, scope) };
             resolved.initial = value.unwrap_or(resolved.initial);
@@ -349,8 +349,8 @@ impl<'s> Declarations<'s> {
         if let Some(dialect) = prelude::owner(name.text) {
             let system = dialect.name().to_ascii_uppercase();
             self.report(
-                Diagnostic::new(Code::E0102, name.span, format!("`{}` is of {system}'s library", name.text))
-                    .label("this file's dialect has no type of that name")
+                Diagnostic::new(Code::E0102, name.span, format!("`{}` is in {system}'s library", name.text))
+                    .label("this file's dialect does not have this type")
                     .help(dialect.how_to_choose()),
             );
             return;
@@ -381,7 +381,7 @@ impl<'s> Declarations<'s> {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         } else if let Some(libraries) = missing::libraries_with(dialect, name.text) {
             error = error
-                .label(format!("it is in {libraries}, and not among what is bundled"))
+                .label(format!("it is in {libraries}, which is not bundled with Staunch"))
                 .help("name its source, or a declaration of it, in `libraries` of staunch.toml");
         }
         self.report(error);
@@ -438,7 +438,7 @@ impl<'s> Declarations<'s> {
                     Code::E0407,
                     low.span.to(high.span),
                     format!(
-                        "the bounds of a subrange of `{}` lie between {} and {}, the lower one first",
+                        "the bounds of a subrange of `{}` must be between {} and {}, the lower one first",
                         base.text, whole.0, whole.1
                     ),
                 )
@@ -505,7 +505,7 @@ impl<'s> Declarations<'s> {
             Bound::Open(_) => None,
         });
         if let Some(span) = fixed {
-            self.error(Code::E0406, span, "of one array, all bounds are `*` or none");
+            self.error(Code::E0406, span, "in an array, either all bounds are `*` or none");
             return None;
         }
         if let Some(held) = self.program.prescanned_in(resolved.ty) {
@@ -596,7 +596,7 @@ impl<'s> Declarations<'s> {
             let resolved = Rc::new(Resolved { ty, initial: scalar_initial(known.value) });
             let place = staunch_ir::Place::root(staunch_ir::Root::Instance, ty);
             let variable = self.variable(value.name, &block, resolved, place);
-            // One that is there twice is reported where the values are declared.
+            // A duplicate is reported where the values are declared.
             let _ = scope.insert(Variable { constant: true, ..variable });
         }
         Rc::new(scope)
@@ -663,7 +663,7 @@ impl<'s> Declarations<'s> {
 
 fn open_is_for_parameters(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0406, span, "an array of any bounds is the type of a parameter")
-        .label("how many elements has it here?")
+        .label("its number of elements is not known here")
         .help("give its bounds, or declare it in VAR_IN_OUT of a FUNCTION or FUNCTION_BLOCK, or in VAR_INPUT or VAR_OUTPUT of a FUNCTION")
 }
 

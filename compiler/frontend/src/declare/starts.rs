@@ -56,7 +56,7 @@ impl<'s> Declarations<'s> {
         if let TypeKind::Reference { kind, .. } = &decl.ty.kind {
             let message = format!("a {} takes no arguments", kind.word());
             let error = Diagnostic::new(Code::E0304, construction.span, message)
-                .label("FB_init has them, which runs for an instance, where that is declared")
+                .label("they are for FB_init, which runs where an instance is declared")
                 .help("delete them")
                 .fix(construction.span, "");
             return self.report(error);
@@ -75,8 +75,8 @@ impl<'s> Declarations<'s> {
                 return;
             }
             let label = match class {
-                Some(_) => "these would be for its METHOD FB_init, which CODESYS has",
-                None => "only instances of a FUNCTION_BLOCK with a METHOD FB_init take some",
+                Some(_) => "arguments are for a METHOD FB_init, as in CODESYS",
+                None => "only an instance of a FUNCTION_BLOCK with a METHOD FB_init takes arguments",
             };
             self.report(
                 Diagnostic::new(
@@ -85,7 +85,7 @@ impl<'s> Declarations<'s> {
                     format!("a variable of type `{name}` takes no arguments"),
                 )
                 .label(label)
-                .help("initial values are after `:=`: `: Type := (member := value)`"),
+                .help("initial values are written after `:=`: `: Type := (member := value)`"),
             );
         } else if !is_array && construction.is_of_elements {
             let error = Diagnostic::new(Code::E0304, construction.span, "FB_init runs for each instance");
@@ -105,8 +105,8 @@ impl<'s> Declarations<'s> {
         let Some((_, span)) = init.filter(|it| self.dialect(it.1) == Dialect::Codesys) else { return };
         self.report(
             Diagnostic::new(Code::E0403, span, "a PROGRAM has no FB_init")
-                .label("the system calls it for instances of FUNCTION_BLOCKs alone")
-                .help("give the variables initial values, or have these statements in a FUNCTION_BLOCK of which there is an instance"),
+                .label("the system calls it only for instances of FUNCTION_BLOCKs")
+                .help("give the variables initial values, or move these statements into a FUNCTION_BLOCK and declare an instance of it"),
         );
     }
 
@@ -123,7 +123,7 @@ impl<'s> Declarations<'s> {
             if let Some(missing) = missing {
                 self.report(
                     Diagnostic::new(Code::E0403, pou.name.span, format!("this FB_init has no input `{missing}`"))
-                        .label("the system says by its inputs what start it is")
+                        .label("the system passes the kind of start in these inputs")
                         .help("declare `VAR_INPUT bInitRetains : BOOL; bInCopyCode : BOOL; END_VAR` in it"),
                 );
             }
@@ -135,19 +135,19 @@ impl<'s> Declarations<'s> {
             if let Some(block) = pou.blocks.iter().filter(is_given).find(|it| !it.vars.is_empty()) {
                 self.report(
                     Diagnostic::new(Code::E0403, block.span, "a METHOD that runs after the start has no inputs")
-                        .label("the system calls it, and has nothing to give")
+                        .label("the system calls it without arguments")
                         .other(pou.name.span, format!("`{AFTER}` is before this METHOD")),
                 );
             }
             if INITIAL.iter().any(|it| Key(it) == Key(pou.name.text)) {
-                let message = format!("`{}` is called by the system already", pou.name.text);
+                let message = format!("`{}` is already called by the system", pou.name.text);
                 self.report(Diagnostic::new(Code::E0403, pou.name.span, message).label(format!("without `{AFTER}`")));
             } else if !owner.attributes.iter().any(|it| it.eq_ignore_ascii_case(AFTER)) {
-                let message = format!("`{}` has not the attribute of its METHOD `{}`", owner.name.text, pou.name.text);
+                let message = format!("`{}` lacks the attribute of its METHOD `{}`", owner.name.text, pou.name.text);
                 self.report(
                     Diagnostic::new(Code::E0403, owner.name.span, message)
                         .label("so CODESYS and TwinCAT do not call the METHOD")
-                        .other(pou.name.span, "this METHOD is to run after the start")
+                        .other(pou.name.span, "this METHOD has the attribute")
                         .help(format!("write `{{attribute '{AFTER}'}}` before the {}, too", owner.kind.word())),
                 );
             }
@@ -169,8 +169,8 @@ impl<'s> Declarations<'s> {
             let name = self.pous[new].ast.name;
             self.report(
                 Diagnostic::new(Code::E0403, name.span, format!("`{}` overrides a METHOD with `{AFTER}`", name.text))
-                    .label("it has not this attribute")
-                    .other(old.span, "this one runs after the start")
+                    .label("this METHOD lacks the attribute")
+                    .other(old.span, "this one has it")
                     .help(format!("write `{{attribute '{AFTER}'}}` before this METHOD, too")),
             );
         }

@@ -29,7 +29,7 @@ impl<'s> Declarations<'s> {
             | Type::Struct(_)
             | Type::Block(_) => {
                 let label = format!("this is {}", self.program.type_name(ty));
-                self.report(Diagnostic::new(Code::E0102, span, "a structure EXTENDS a structure").label(label));
+                self.report(Diagnostic::new(Code::E0102, span, "a structure can only EXTEND a structure").label(label));
                 None
             }
         }
@@ -39,7 +39,7 @@ impl<'s> Declarations<'s> {
         if let Some(name) = base.last() {
             self.report(
                 Diagnostic::new(Code::E0403, name.span, "only a structure EXTENDS another type")
-                    .label("what is declared here is no structure"),
+                    .label("this declares something else"),
             );
         }
     }
@@ -98,7 +98,7 @@ impl<'s> Declarations<'s> {
             }
         }
         if made.fields.is_empty() && complete && self.dialect(span).has_empty_structures() {
-            // It is somewhere all the same, as an empty class is.
+            // It needs an address anyway, like an empty class.
             let location = self.location(span);
             made.push(storage("empty", Type::Elementary(Elementary::Byte), Const::Zero, None, location));
         }
@@ -274,7 +274,7 @@ impl<'s> Declarations<'s> {
             Type::Enum(_) => Ok(self.size_of(ty)),
             Type::String(it) => Ok(if it.wide { 2 } else { 1 }),
             Type::Array(id) => self.smallest_part(self.program.array(id).element),
-            Type::Struct(id) if self.is_instance(id) => Err((ty, "an instance is changed by its own POU alone")),
+            Type::Struct(id) if self.is_instance(id) => Err((ty, "an instance is changed only by its own POU")),
             Type::Struct(id) => {
                 let structure = self.program.structure(id);
                 let fields = structure.fields.iter().map(|it| it.ty);
@@ -283,9 +283,9 @@ impl<'s> Declarations<'s> {
                     .map(|it| self.smallest_part(it))
                     .try_fold(8, |least, part| Ok(part?.min(least)))
             }
-            Type::Block(_) => Err((ty, "an instance is changed by its own POU alone")),
-            Type::Reference(_) => Err((ty, "a reference is made of a variable, never of bytes")),
-            Type::Subrange(..) => Err((ty, "other bytes may be outside of its limits")),
+            Type::Block(_) => Err((ty, "an instance is changed only by its own POU")),
+            Type::Reference(_) => Err((ty, "a reference is made from a variable, never from bytes")),
+            Type::Subrange(..) => Err((ty, "other bytes may be outside its limits")),
         }
     }
 

@@ -98,7 +98,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 crate::Diagnostic::new(crate::Code::E0403, not, "a variable is RETAIN or NON_RETAIN, not both")
                     .label("this contradicts the other word")
-                    .other(kept, "this keeps the values over a restart")
+                    .other(kept, "this keeps the values through a restart")
                     .help("delete one of the two"),
             );
         }
@@ -116,7 +116,7 @@ impl<'s> Declarations<'s> {
                     name.span,
                     format!("RETAIN does not keep the count of `{path}`, a Cscape counter"),
                 )
-                .label("it counts anew after a restart")
+                .label("it starts again from 0 after a restart")
                 .help("use R_CTU or R_CTD, with a RETAIN variable for RCV"),
             );
         }

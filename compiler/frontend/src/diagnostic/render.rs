@@ -68,7 +68,7 @@ fn short(diagnostic: &Diagnostic, sources: &Sources) -> String {
     format!("{}:{line}:{column}: {severity}[{code}]: {}", source.path, diagnostic.message)
 }
 
-/// Lines that a snippet may show between two marks; further apart, each mark has its own.
+/// Lines that a snippet may show between two marks; with more lines between them, each mark has its own snippet.
 const NEAR: u32 = 8;
 /// Bytes of a line that are shown as they are; of a longer one, what is around the mark.
 const WIDE: usize = 400;
@@ -102,7 +102,7 @@ fn human(diagnostic: &Diagnostic, sources: &Sources, style: Style) -> String {
 /// The renderer announces a snippet without a path by a line that holds `:::` alone.
 fn without_bare_marks(text: &str) -> String {
     let bare = |line: &str| {
-        // Colours are `ESC [ … m`; nothing else may be beside the mark.
+        // Colours are `ESC [ … m`; nothing else may be next to the mark.
         let visible = line
             .split('\u{1b}')
             .map(|it| it.strip_prefix('[').and_then(|it| it.split_once('m')).map_or(it, |(_, rest)| rest));

@@ -65,7 +65,7 @@ const NOT_BUNDLED: [(&str, &[&str]); 5] = [
     ),
 ];
 
-/// What TwinCAT's types tell of the machine, of which a program is told nothing here.
+/// Members of TwinCAT's types that describe the machine, which a program here knows nothing of.
 const MEMBERS: [(&str, &[&str]); 2] = [
     (
         "PlcTaskSystemInfo",
@@ -131,13 +131,13 @@ const OF_S7: [(&str, &str, &str); 2] = [
     ("T_COMBINE", "it is `CONCAT_DATE_TOD` in SCL", "write `CONCAT_DATE_TOD(IN1 := day, IN2 := time)`"),
 ];
 
-/// Operators, whose operands may be what is no value elsewhere.
+/// Operators, whose operands need not be values.
 const OPERATORS: [&str; 4] = ["ADRINST", "BITADR", "INDEXOF", "__VARINFO"];
 
 /// Variables that the system has.
 const VARIABLES: [&str; 1] = ["__CURRENTTASK"];
 
-/// The library that has a type of this name.
+/// The library that has a type with this name.
 pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static str> {
     if dialect == Dialect::Logix {
         return is_one_of(&OF_LOGIX, name).then_some("Logix Designer");
@@ -146,14 +146,14 @@ pub(crate) fn library_of_type(dialect: Dialect, name: &str) -> Option<&'static s
     found.filter(|_| dialect == Dialect::Codesys)
 }
 
-/// Whether a name is that of a library of TwinCAT or CODESYS: their names begin alike.
+/// Whether a name is that of a library of TwinCAT or CODESYS: their names begin with the same letters.
 pub(crate) fn is_library(dialect: Dialect, name: &str) -> bool {
     const STARTS: [&str; 6] = ["Tc2_", "Tc3_", "SM3_", "CAA_", "IoDrv", "Cmp"];
     let starts_so = |it: &str| name.get(..it.len()).is_some_and(|start| start.eq_ignore_ascii_case(it));
     dialect == Dialect::Codesys && name.len() > 4 && STARTS.iter().any(|it| starts_so(it))
 }
 
-/// The libraries of TwinCAT and CODESYS that have a type of this name, which is not bundled.
+/// The libraries of TwinCAT and CODESYS that have a type with this name, if it is not bundled.
 pub(crate) fn libraries_with(dialect: Dialect, name: &str) -> Option<&'static str> {
     if dialect != Dialect::Codesys {
         return None;
@@ -165,7 +165,7 @@ pub(crate) fn libraries_with(dialect: Dialect, name: &str) -> Option<&'static st
     NOT_BUNDLED.iter().find(|(_, names)| is_one_of(names, name)).map(|it| it.0)
 }
 
-/// Whether TwinCAT's type has a member of this name, which is not there here.
+/// Whether TwinCAT's type has a member with this name, which is not available here.
 pub(crate) fn is_member(dialect: Dialect, ty: &str, name: &str) -> bool {
     let is_it = |(of, names): &(&str, &[&str])| of.eq_ignore_ascii_case(ty) && is_one_of(names, name);
     dialect == Dialect::Codesys && MEMBERS.iter().any(is_it)
@@ -194,7 +194,7 @@ pub(crate) fn function_of_type(space: &str, name: &str) -> Option<&'static str> 
     is_it.then_some("__VARINFO")
 }
 
-/// Why S7's function of this name is not there, and what to write for it.
+/// Why S7's function with this name is not available, and what to write instead.
 pub(crate) fn function_of_s7(dialect: Dialect, name: &str) -> Option<(&'static str, &'static str)> {
     let found = OF_S7.iter().find(|it| it.0.eq_ignore_ascii_case(name)).filter(|_| dialect == Dialect::Siemens);
     found.map(|(_, why, instead)| (*why, *instead))

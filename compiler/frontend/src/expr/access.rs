@@ -73,10 +73,12 @@ impl<'s> Checker<'_, 's> {
             return Some(());
         }
         let who = match declared.access {
-            ast::Access::Public => "everyone uses it",
-            ast::Access::Internal => "only what is in its own namespace uses it",
-            ast::Access::Private => "only the routines of its own FUNCTION_BLOCK use it",
-            ast::Access::Protected => "only the routines of its FUNCTION_BLOCK, and of those that extend it, use it",
+            ast::Access::Public => "everyone can use it",
+            ast::Access::Internal => "only its own namespace can use it",
+            ast::Access::Private => "only the routines of its own FUNCTION_BLOCK can use it",
+            ast::Access::Protected => {
+                "only the routines of its FUNCTION_BLOCK, and of those that extend it, can use it"
+            }
         };
         self.report(
             Diagnostic::new(Code::E0109, name.span, format!("`{title}` is {}", declared.access.word()))

@@ -92,8 +92,12 @@ impl<'s> Checker<'_, 's> {
         }
         let (wanted, found) = (class.name(), self.type_name(ty));
         self.report(
-            Diagnostic::new(Code::E0204, expr.span, format!("`{}` takes {wanted}, this is {found}", formal.name.text))
-                .label(format!("this is {found}")),
+            Diagnostic::new(
+                Code::E0204,
+                expr.span,
+                format!("`{}` takes {wanted}, but this is {found}", formal.name.text),
+            )
+            .label(format!("this is {found}")),
         );
         None
     }

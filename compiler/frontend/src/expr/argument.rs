@@ -219,7 +219,7 @@ impl<'s> Checker<'_, 's> {
     fn shared_in_out(&mut self, formal: &Formal<'s>, place: &Place, view: Window, span: Span) -> Option<Role> {
         let ty = formal.resolved.ty;
         if self.decl.program.is_open(ty) {
-            self.decl.not_supported(span, "what shares its bits, as an ARRAY[*],");
+            self.decl.not_supported(span, "a variable that shares its bits, as an ARRAY[*],");
             return None;
         }
         if view.ty != ty {
@@ -421,8 +421,8 @@ impl<'s> Checker<'_, 's> {
         self.report(
             Diagnostic::new(Code::E0303, span, format!("`{owner}` needs a variable for `{name}`"))
                 .label(match formal.section {
-                    Section::InOut => "a VAR_IN_OUT is given at every call",
-                    _ => "an array of any bounds is given at every call",
+                    Section::InOut => "every call must give a VAR_IN_OUT",
+                    _ => "every call must give an ARRAY[*]",
                 })
                 .other(formal.name.span, "declared here")
                 .help(match formal.section {
@@ -462,7 +462,7 @@ impl<'s> Checker<'_, 's> {
         if !names_storage {
             self.report(
                 Diagnostic::new(Code::E0306, expr.span, format!("`{name}` needs a variable"))
-                    .label("this is a value; the call writes to what is given here"),
+                    .label("this is a value, and the call writes to this argument"),
             );
             return None;
         }

@@ -59,8 +59,8 @@ impl<'s> Checker<'_, 's> {
         let word = self.decl.pous[slot].ast.kind.word();
         self.report(
             Diagnostic::new(Code::E0101, name.span, format!("`{}` is {}", name.text, article(word)))
-                .label("nothing is assigned to it")
-                .help(format!("assign to a variable; a result is assigned in the {word} itself")),
+                .label("it cannot be assigned to")
+                .help(format!("assign to a variable; a result is assigned inside the {word}")),
         );
         true
     }
@@ -166,7 +166,7 @@ impl<'s> Checker<'_, 's> {
         if ty != Type::BOOL {
             let ty = self.type_name(ty);
             let op = if *set { "S=" } else { "R=" };
-            self.error(Code::E0201, target.span, format!("`{op}` needs a BOOL, this is {ty}"));
+            self.error(Code::E0201, target.span, format!("`{op}` needs a BOOL, but this is {ty}"));
             return None;
         }
         self.note_assigned(&found.place, target.span);
@@ -217,8 +217,8 @@ impl<'s> Checker<'_, 's> {
             _ => return false,
         };
         self.report(
-            Diagnostic::new(Code::E0306, target.span, format!("{what} is assigned by a statement of its own"))
-                .label("this assignment is part of another one, or of an expression")
+            Diagnostic::new(Code::E0306, target.span, format!("{what} can only be assigned by a separate statement"))
+                .label("this assignment is part of another one or of an expression")
                 .help("assign the value to a variable here, and this one in a statement after it"),
         );
         true
@@ -231,7 +231,7 @@ impl<'s> Checker<'_, 's> {
         let error = match way.as_str() {
             "" => Diagnostic::new(Code::E0210, span, format!("an instance of {instance} cannot be assigned to"))
                 .label("this is the block itself"),
-            way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned to as a whole"))
+            way => Diagnostic::new(Code::E0210, span, format!("{ty} cannot be assigned as a whole"))
                 .label(format!("it holds an instance of {instance}, at `{way}`, which is never copied")),
         };
         self.report(error.help(match self.decl.is_copied_elsewhere(place.ty) {

@@ -87,7 +87,7 @@ impl<'s> Checker<'_, 's> {
                     let name = parameters[at].name;
                     self.report(
                         Diagnostic::new(Code::E0304, argument.span, format!("`{name}` is given twice"))
-                            .label("it has a value already"),
+                            .label("it already has a value"),
                     );
                 }
                 Ok((at, value)) => given[at] = value,
@@ -156,8 +156,8 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn too_many(&self, owner: &str, parameters: &[Parameter<'_>], span: Span) -> Diagnostic {
         let names: Vec<_> = parameters.iter().map(|it| it.name).collect();
         let count = names.len();
-        let error =
-            Diagnostic::new(Code::E0302, span, format!("`{owner}` takes {}", plural(count))).label("one too many");
+        let error = Diagnostic::new(Code::E0302, span, format!("`{owner}` takes {}", plural(count)))
+            .label("this is one too many");
         match names.as_slice() {
             [] => error,
             [one] => error.note(format!("it is {one}")),
@@ -166,7 +166,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A call that names no parameter gives all inputs: who counts them must not wonder which one is
-    /// missing. Those with a declared value, which `is_optional` tells, may be left out after the others.
+    /// missing. Those with a declared value (`is_optional`) may be left out after the others.
     pub(crate) fn require_all(
         &mut self,
         owner: &str,

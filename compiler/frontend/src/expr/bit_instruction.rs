@@ -137,7 +137,7 @@ impl<'s> Checker<'_, 's> {
                 let error = Diagnostic::new(
                     Code::E0321,
                     target.span,
-                    format!("`[:=]` assigns a number, a BOOL or a STRING, this is {ty}"),
+                    format!("`[:=]` assigns a number, a BOOL or a STRING, but this is {ty}"),
                 );
                 self.report(error.label("the prescan sets one value to 0").help("write `:=`"));
                 return None;

@@ -113,7 +113,7 @@ impl<'s> Checker<'_, 's> {
             let found = self.type_name(ty);
             let wanted = if dialect.has_bits_of_integers() { "an integer" } else { "a bit string" };
             self.report(
-                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or {wanted}, this is {found}"))
+                Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or {wanted}, but this is {found}"))
                     .label(format!("this is {found}")),
             );
             return None;
@@ -160,7 +160,7 @@ impl<'s> Checker<'_, 's> {
     }
 }
 
-/// An immediate value is a DINT, and beside 64 bits it has zeros above, as every operand of an instruction on bits
+/// An immediate value is a DINT, and with a 64-bit operand it has zeros above, as every operand of an instruction on bits
 /// (1756-RM006K, pp. 541 and 545).
 fn zero_filled(value: i128, ty: Elementary) -> i128 {
     let is_dint = Elementary::Dint.repr().integer(value).is_some();

@@ -93,8 +93,8 @@ impl<'s> Checker<'_, 's> {
         callee: Span,
         span: Span,
     ) {
-        let error = Diagnostic::new(Code::E0305, callee, format!("`{}` is a PROPERTY, which is not called", name.text))
-            .label("it is read, and written, as a variable is");
+        let error = Diagnostic::new(Code::E0305, callee, format!("`{}` is a PROPERTY and cannot be called", name.text))
+            .label("it is read and written like a variable");
         let error = error.help(format!("write `{}` without `()`", name.text));
         let brackets = Span { start: callee.end, ..span };
         self.report(if arguments.is_empty() { error.fix(brackets, "") } else { error });
@@ -127,8 +127,8 @@ impl<'s> Checker<'_, 's> {
         if info.instructions.iter().any(|it| !it.name.is_empty()) {
             let names: Vec<_> = info.instructions.iter().map(|it| it.name).collect();
             self.report(
-                Diagnostic::new(Code::E0305, callee, format!("{} is not called itself", article(info.name)))
-                    .label(format!("it is worked on by {}", crate::diagnostic::wording::list(&names)))
+                Diagnostic::new(Code::E0305, callee, format!("{} cannot be called", article(info.name)))
+                    .label(format!("it is the operand of {}", crate::diagnostic::wording::list(&names)))
                     .help(format!("write `{}({}, …)`", names[0], self.decl.log.sources.text(callee))),
             );
             return None;
@@ -363,11 +363,11 @@ impl<'s> Checker<'_, 's> {
 
     /// Which address it starts with is known when the instance starts, and not at a call.
     fn refuse_address_at_calls(&mut self, input: ast::Name<'s>, callee: Span) {
-        let message = format!("`{}` would start anew with its address at this call", input.text);
+        let message = format!("this call would set `{}` to its initial address again", input.text);
         self.report(
             Diagnostic::new(Code::E0902, callee, message)
                 .label("the call does not give it")
-                .other(input.span, "it starts with an address, by `initialize_on_call` at each call")
+                .other(input.span, "its initial value is an address, and it has `initialize_on_call`")
                 .help(format!("give it: `{} := …`", input.text)),
         );
     }

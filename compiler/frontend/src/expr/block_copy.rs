@@ -3,7 +3,7 @@
 //!
 //! `Length` counts elements of the destination. Elements of one type are assigned one after the other, numbers
 //! of different types byte by byte. A copy ends at the end of the destination's array, as documented; where the
-//! controller would go on in memory that is not the array's, it is a fault.
+//! controller would continue in memory that is not the array's, it is a fault.
 
 use super::checker::Checker;
 use super::operand::Operand;
@@ -90,7 +90,7 @@ impl<'s> Checker<'_, 's> {
         if is_known || self.decl.dialect(name.span).family() != Family::Logix {
             return false;
         }
-        // A constant is wanted: who asked says that this is no value.
+        // A constant is wanted: the caller reports that this is not a value.
         if self.signature.is_none() {
             return true;
         }
@@ -239,8 +239,8 @@ impl<'s> Checker<'_, 's> {
                 let text = self.decl.log.sources.text(side.span);
                 let message = format!("`{}` needs {elements} elements from `{text}` on", name.text);
                 let label = match remaining {
-                    1 => "there is 1".to_owned(),
-                    many => format!("there are {many}"),
+                    1 => "only 1 is left".to_owned(),
+                    many => format!("only {many} are left"),
                 };
                 let error = Diagnostic::new(Code::E0208, side.span, message).label(label);
                 self.report(error.help("Length counts elements of the destination's type"));
@@ -295,7 +295,7 @@ impl<'s> Checker<'_, 's> {
         self.report(
             Diagnostic::new(Code::E0902, target.span, format!("{what} is not supported"))
                 .label(format!("expected {from}"))
-                .note("it copies bytes, and strings and structures have others in a controller")
+                .note("it copies bytes, and a controller stores strings and structures differently")
                 .help("assign the members one by one"),
         );
         None
@@ -324,17 +324,25 @@ impl<'s> Checker<'_, 's> {
         if sizes.is_empty() || ty == Type::BOOL {
             let ty = self.type_name(found.place.ty);
             self.report(
-                Diagnostic::new(Code::E0201, source.span, format!("`SIZE` counts an array's elements, this is {ty}"))
-                    .label("expected an array of numbers, strings or structures"),
+                Diagnostic::new(
+                    Code::E0201,
+                    source.span,
+                    format!("`SIZE` counts an array's elements, but this is {ty}"),
+                )
+                .label("expected an array of numbers, strings or structures"),
             );
             return None;
         }
         let number = self.typed(dimension, Some(Type::DINT))?;
         let position = constant_of(&number).and_then(|it| usize::try_from(it).ok());
         let Some((position, size)) = position.and_then(|it| Some((it, *sizes.get(it)?))) else {
-            let message = "the dimension is a constant, and one of the array's";
+            let message = "the dimension must be a constant, and exist in the array";
             let (count, last) = (sizes.len(), sizes.len() - 1);
-            let label = if count == 1 { "it has 1, which is 0".to_owned() } else { format!("it has 0 to {last}") };
+            let label = if count == 1 {
+                "the only dimension is 0".to_owned()
+            } else {
+                format!("its dimensions are 0 to {last}")
+            };
             self.report(Diagnostic::new(Code::E0208, dimension.span, message).label(label));
             return None;
         };

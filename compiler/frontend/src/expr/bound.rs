@@ -1,5 +1,5 @@
-//! What a VAR_CONFIG binds in a PROGRAM that others call by its name: the call copies what lies at the address before the
-//! body, and back after it where it is no input, as the PROGRAM's own run would.
+//! What a VAR_CONFIG binds in a PROGRAM that others call by its name: the call copies the value at the address before the
+//! body, and back after it if it is not an input, as the PROGRAM's own run would.
 
 use super::checker::Checker;
 use crate::ast::{self, ExprKind};
@@ -7,7 +7,7 @@ use crate::types::address::{self, is_input};
 use staunch_ir::HELD_PROGRAM;
 use staunch_ir::{Area, Expr, Place, Root, StructId};
 
-/// A variable of the PROGRAM, and what lies at its address.
+/// A variable of the PROGRAM, and the storage at its address.
 pub(super) struct Bound<'s> {
     variable: Place,
     located: Place,

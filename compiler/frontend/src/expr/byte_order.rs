@@ -47,8 +47,8 @@ impl<'s> Checker<'_, 's> {
         let Some(part) = without else { return Some((value, ty)) };
         let (found, part) = (self.type_name(ty), self.type_name(part));
         let wanted = "a number, a bit string, a time or a character, or an array or a structure of them";
-        let label = if is_whole { format!("this has {part} in it") } else { format!("this is {found}") };
-        let message = format!("`{}` takes {wanted}, this is {found}", name.text);
+        let label = if is_whole { format!("this contains {part}") } else { format!("this is {found}") };
+        let message = format!("`{}` takes {wanted}, but this is {found}", name.text);
         self.report(Diagnostic::new(Code::E0204, name.span, message).label(label));
         None
     }

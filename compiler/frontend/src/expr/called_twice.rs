@@ -112,7 +112,7 @@ pub(super) fn resets_surely(ty: Type, arguments: &[ast::Argument<'_>]) -> bool {
     [PinRole::Reset, PinRole::Load].into_iter().any(|it| input(ty, arguments, it).is_some_and(|it| is_bool(it, true)))
 }
 
-/// Whether a call does no more than reset or load a counter, or take back a timer's input: it is beside
+/// Whether a call does no more than reset or load a counter, or take back a timer's input: it comes in addition to
 /// the one that counts.
 pub(super) fn only_resets(ty: Type, arguments: &[ast::Argument<'_>]) -> bool {
     let is_timer = is_timer(ty);

@@ -122,7 +122,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// What a bare name before parentheses means, where that is not the variable of this name: one that cannot be called
+    /// What a bare name before parentheses means, where that is not the variable with this name: one that cannot be called
     /// does not hide what is.
     fn meant_by_call(&self, name: ast::Name<'s>) -> Option<Found> {
         if self.is_callable_variable(name) {
@@ -161,7 +161,7 @@ impl<'s> Checker<'_, 's> {
         self.is_itself(slot) && self.decl.dialect(name.span).calls_own_by_this() && self.is_function(name)
     }
 
-    /// Whether it is the METHOD that is being checked, and the only one of its name.
+    /// Whether it is the METHOD that is being checked, and the only one with its name.
     fn is_itself(&self, slot: usize) -> bool {
         self.slot == Some(slot) && self.decl.all_of_a_name(slot).len() == 1
     }
@@ -209,7 +209,10 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0309,
                     name.span,
-                    format!("`{}` is a tag of Logix, a bare `{text}` here no instruction of it", tag.text),
+                    format!(
+                        "`{}` is a tag of Logix, but a bare `{text}` is not an instruction of Logix here",
+                        tag.text
+                    ),
                 )
                 .label("expected an instruction of Logix")
                 .help(format!("write `LOGIX.{text}(…)`, or start the file with `{{dialect 'logix'}}`"))
@@ -225,7 +228,7 @@ impl<'s> Checker<'_, 's> {
             name.span,
             match kind {
                 ast::PouKind::Program => format!("the PROGRAM `{}` cannot be called", name.text),
-                _ => format!("`{}` is a FUNCTION_BLOCK; an instance of it is called", name.text),
+                _ => format!("`{}` is a FUNCTION_BLOCK; only an instance of it can be called", name.text),
             },
         );
         let declared = format!("`VAR instance : {}; END_VAR`, and call `instance(…)`", name.text);
@@ -233,7 +236,7 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("declare one: {declared}"));
         } else if kind == ast::PouKind::Program && !self.decl.dialect(name.span).calls_programs() {
             error = error
-                .label("PROGRAMs are called in `codesys` alone")
+                .label("PROGRAMs can be called only in `codesys`")
                 .note("it is accepted with `--dialect codesys`")
                 .help(format!(
                     "write it as FUNCTION_BLOCK {} … END_FUNCTION_BLOCK, declare an instance of it: {declared}",
@@ -254,7 +257,7 @@ impl<'s> Checker<'_, 's> {
         let text = name.text.to_ascii_uppercase();
         self.report(
             Diagnostic::new(Code::E0904, name.span, format!("`{text}` is a counter of S5, which is not supported"))
-                .label("it counts from 0 to 999, in BCD, in a counter that has a number")
+                .label("it counts from 0 to 999 in BCD, in a numbered counter")
                 .help(format!(
                     "declare `c : {counter};`, and call `c({pins})`: it counts in INT, also past 999 and below 0"
                 )),
@@ -281,7 +284,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(dialect) = functions::owner(name.text) {
             let system = dialect.name().to_ascii_uppercase();
             let error = Diagnostic::new(Code::E0307, name.span, format!("`{}` is a function of {system}", name.text))
-                .label("this file's dialect has none of that name");
+                .label("this file's dialect does not have this function");
             let error = match name.text.eq_ignore_ascii_case("ROUND") {
                 true => error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one"),
                 false => error.help(dialect.how_to_choose()),
@@ -292,8 +295,8 @@ impl<'s> Checker<'_, 's> {
         if let Some(dialect) = prelude::owner(name.text) {
             let system = dialect.name().to_ascii_uppercase();
             self.report(
-                Diagnostic::new(Code::E0307, name.span, format!("`{}` is of {system}'s library", name.text))
-                    .label("this file's dialect has none of that name")
+                Diagnostic::new(Code::E0307, name.span, format!("`{}` is in {system}'s library", name.text))
+                    .label("this file's dialect does not have this function")
                     .help(dialect.how_to_choose()),
             );
             return;

@@ -1,4 +1,4 @@
-//! Of FUNCTIONs, or METHODs, of one name the one that a call means.
+//! Which of several FUNCTIONs or METHODs with the same name a call means.
 //!
 //! Those are candidates to which each argument can be given as it is written. One is better than another where at
 //! some argument its parameter is closer to what is given, and at none is it farther: a parameter of the argument's
@@ -245,7 +245,7 @@ impl<'s> Checker<'_, 's> {
         (!has_errors).then_some(result)
     }
 
-    /// What those of one name are.
+    /// What the candidates are called.
     fn word(&self, slots: &[usize]) -> &'static str {
         slots.first().map_or("FUNCTION", |it| self.decl.pous[*it].ast.kind.word())
     }
@@ -253,15 +253,16 @@ impl<'s> Checker<'_, 's> {
     fn none_fits(&self, all: &[usize], name: Span) -> Diagnostic {
         let (word, text) = (self.word(all), self.decl.log.sources.text(name));
         let error = Diagnostic::new(Code::E0317, name, format!("no {word} `{text}` takes these arguments"));
-        self.with_candidates(error.label("none of them fits"), all)
+        self.with_candidates(error.label("none of the declarations fits"), all)
     }
 
     fn several_fit(&self, candidates: &[Candidate], name: Span) -> Diagnostic {
         let slots: Vec<_> = candidates.iter().map(|it| it.slot).collect();
         let (word, text) = (self.word(&slots), self.decl.log.sources.text(name));
-        let message = format!("{} {word}s `{text}` take these arguments, and none fits best", candidates.len());
+        let message =
+            format!("{} {word}s `{text}` take these arguments, and none fits better than the others", candidates.len());
         let error = Diagnostic::new(Code::E0317, name, message).label("which one is meant?");
-        self.with_candidates(error, &slots).help("convert an argument to the type that is meant: `TO_INT(…)`, `INT#5`")
+        self.with_candidates(error, &slots).help("convert an argument to the intended type: `TO_INT(…)`, `INT#5`")
     }
 
     /// Names FUNCTIONs with the types that they take.
@@ -269,7 +270,7 @@ impl<'s> Checker<'_, 's> {
         let shown = |slot: &usize| format!("({})", self.decl.parameter_types(*slot).join(", "));
         let shown: Vec<_> = slots.iter().take(8).map(shown).collect();
         let shown: Vec<_> = shown.iter().map(String::as_str).collect();
-        error.note(format!("there are those of {}", list(&shown).replace(" or ", " and ")))
+        error.note(format!("the candidates are those of {}", list(&shown).replace(" or ", " and ")))
     }
 }
 

@@ -16,7 +16,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Block, Elementary, Expr, Local, Location, Place, Statement, StatementKind, Type};
 use std::rc::Rc;
 
-/// What was found for a call of FUNCTIONs of one name: it is looked for once, however often the call is looked at.
+/// The result for a call of overloaded FUNCTIONs: it is computed once, however often the call is checked.
 pub(crate) type Choice = Result<usize, Box<Diagnostic>>;
 
 /// Checks the body of one POU, or one constant expression.
@@ -45,11 +45,11 @@ pub(crate) struct Checker<'d, 's> {
     pub called: Called,
     /// The calls of which one takes back what the other gives, which are reported as such.
     pub dead_calls: FxHashSet<Span>,
-    /// Which of the FUNCTIONs of one name calls mean, by the places of these names.
+    /// Which of the overloaded FUNCTIONs calls mean, by the places of these names.
     pub choices: FxHashMap<(Span, Option<Elementary>), Choice>,
     /// The first statement that makes nothing, because something in it was refused.
     pub left_out: Option<Span>,
-    /// What is checked may never be evaluated, as a call whose EN is FALSE: a constant that faults there is no mistake.
+    /// What is checked may never be evaluated, as a call whose EN is FALSE: a constant that faults there is not a mistake.
     pub may_not_run: bool,
     /// Where an ENO of the innermost call with one leads, while the call's arguments are evaluated.
     pub late: Option<LateTarget<'s>>,
@@ -129,7 +129,7 @@ impl<'d, 's> Checker<'d, 's> {
         self.scope.get(WANTED).is_some()
     }
 
-    /// Whether the body is one of a unit test, whatever its kind: it stands in for what is around a program.
+    /// Whether the body is one of a unit test, whatever its kind: it takes the place of a program's surroundings.
     pub(crate) fn is_of_tests(&self) -> bool {
         self.is_test() || self.is_suite() || self.slot.is_some_and(|it| self.decl.is_of_fixture(it))
     }

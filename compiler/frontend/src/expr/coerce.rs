@@ -26,7 +26,7 @@ impl<'s> Checker<'_, 's> {
                 return Some(Expr { ty: to, ..value });
             }
             self.report(
-                Diagnostic::new(Code::E0202, span, format!("{number} lies outside the subrange {low}..{high}"))
+                Diagnostic::new(Code::E0202, span, format!("{number} is outside the subrange {low}..{high}"))
                     .label("the variable cannot hold it"),
             );
             return None;
@@ -215,7 +215,7 @@ impl<'s> Checker<'_, 's> {
     fn open_is_no_value(&mut self, ty: Type, span: Span) -> Option<Expr> {
         let ty = self.type_name(ty);
         self.report(
-            Diagnostic::new(Code::E0201, span, "an array of any bounds is not assigned as a whole")
+            Diagnostic::new(Code::E0201, span, "an ARRAY[*] cannot be assigned as a whole")
                 .label(format!("this is {ty}"))
                 .help("assign its elements, from LOWER_BOUND to UPPER_BOUND"),
         );
@@ -311,14 +311,14 @@ impl<'s> Checker<'_, 's> {
 
     fn report_implicit(&mut self, code: Code, message: String, from: Elementary, to: Elementary, span: Span) {
         self.report(Diagnostic::new(code, span, message).label("implicit conversion").help(format!(
-            "say so: `{}_TO_{}(…)`",
+            "convert it explicitly: `{}_TO_{}(…)`",
             from.name(),
             to.name()
         )));
     }
 
     /// Logix stores each number in a tag of any type of numbers (1756-RM003, "Data Conversions"): a real is rounded, ties
-    /// to even, and an integer keeps its low bits. A BOOL is no number.
+    /// to even, and an integer keeps its low bits. A BOOL is not a number.
     fn becomes_number(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
         match (from.is_real(), to.is_real()) {
             _ if !(from.is_real() || from.is_integer()) || !(to.is_real() || to.is_integer()) => return false,
@@ -351,7 +351,7 @@ impl<'s> Checker<'_, 's> {
     fn report_narrowing(&mut self, from: Elementary, to: Elementary, span: Span) {
         let function = format!("{}_TO_{}", from.name(), to.name());
         let mut error = Diagnostic::new(Code::E0203, span, format!("expected {}, found {}", to.name(), from.name()))
-            .label(format!("{} does not convert to {} by itself", from.name(), to.name()));
+            .label(format!("{} is not converted to {} implicitly", from.name(), to.name()));
         error = match self.short_text(span) {
             Some(text) => error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})")),
             None => error.help(format!("convert it with `{function}(…)`")),
@@ -417,7 +417,7 @@ impl<'s> Checker<'_, 's> {
     fn warn_of_cut(&mut self, value: &Expr, ty: StringType, span: Span) {
         let ExprKind::Text(text) = &value.kind else { return };
         if !text.fits(ty) {
-            let message = format!("this text has {} characters, and {ty} keeps {}", text.len(), ty.capacity);
+            let message = format!("this text has {} characters, but {ty} holds {}", text.len(), ty.capacity);
             self.report(Diagnostic::new(Code::W0202, span, message).label("the rest is cut off"));
         }
     }

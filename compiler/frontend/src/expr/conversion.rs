@@ -303,7 +303,7 @@ impl<'s> Checker<'_, 's> {
         if value.ty == Type::BOOL || !self.admits(class, value.ty, span) {
             let wanted = if class == Class::Bit { "a bit string of digits" } else { "an unsigned integer" };
             let found = self.type_name(value.ty);
-            let message = format!("`{}` takes {wanted}, this is {found}", name.text);
+            let message = format!("`{}` takes {wanted}, but this is {found}", name.text);
             self.report(Diagnostic::new(Code::E0204, span, message).label(format!("this is {found}")));
             return None;
         }
@@ -343,8 +343,12 @@ impl<'s> Checker<'_, 's> {
         if !matches!(from, Type::Elementary(it) if it.is_real()) {
             let found = self.type_name(from);
             self.report(
-                Diagnostic::new(Code::E0204, span, format!("`{}` takes a REAL or LREAL, this is {found}", name.text))
-                    .label(format!("this is {found}")),
+                Diagnostic::new(
+                    Code::E0204,
+                    span,
+                    format!("`{}` takes a REAL or LREAL, but this is {found}", name.text),
+                )
+                .label(format!("this is {found}")),
             );
             return None;
         }

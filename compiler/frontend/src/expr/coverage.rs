@@ -213,7 +213,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Counts the decisions inside of what is no decision itself.
+    /// Counts the decisions inside an expression that is not a decision itself.
     fn count_within(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Apply(_, operands) | ExprKind::ApplyText(_, operands) => {

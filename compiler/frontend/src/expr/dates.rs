@@ -35,7 +35,7 @@ impl<'s> Checker<'_, 's> {
     fn refuse_date_overflow(&mut self, overflows: bool, result: Elementary, span: Span) -> Option<()> {
         if overflows && result.is_date_and_time() {
             let message = format!("this constant {} overflows", result.name());
-            self.report(Diagnostic::new(Code::E0209, span, message).label("dates reach from 1677-09-22 to 2262-04-11"));
+            self.report(Diagnostic::new(Code::E0209, span, message).label("dates go from 1677-09-22 to 2262-04-11"));
             return None;
         }
         self.refuse_time_overflow(overflows, result, span)

@@ -24,7 +24,7 @@ pub(crate) struct Way {
 /// takes about 180 bytes at each call.
 const MANY: usize = 8;
 
-/// What a call depends on that is no direct one.
+/// What a call that is not direct depends on.
 #[derive(Clone, Debug)]
 pub(crate) struct Dispatch {
     ways: Vec<Way>,
@@ -148,7 +148,7 @@ impl<'s> Checker<'_, 's> {
         Some(dispatch)
     }
 
-    /// Whether a library only declares what may run: who calls that is told so at the call.
+    /// Whether a library only declares what may run: this is reported at the call.
     fn is_without_body(&self, dispatch: &Dispatch) -> bool {
         dispatch.calls(|slot| self.decl.pous[slot].ast.is_stub)
     }
@@ -175,10 +175,10 @@ impl<'s> Checker<'_, 's> {
                 continue;
             }
             let heir = self.decl.pous[way.slot].ast.name;
-            let message = format!("`{}` needs variables that this call does not give", heir.text);
+            let message = format!("this call lacks variables that `{}` needs", heir.text);
             self.report(
                 Diagnostic::new(Code::E0303, span, message)
-                    .label("this may be an instance of it")
+                    .label("this may be an instance of that class")
                     .other(heir.span, "it declares VAR_IN_OUTs that its base does not have"),
             );
             return None;
@@ -216,8 +216,8 @@ impl<'s> Checker<'_, 's> {
             let declared = self.decl.pous[class].ast.name.span;
             self.report(
                 Diagnostic::new(Code::E0201, expr.span, format!("`{found}` does not implement `{wanted}`"))
-                    .label(format!("expected an instance of what does, or another `{wanted}`"))
-                    .other(declared, format!("to have it, write `IMPLEMENTS {wanted}` here")),
+                    .label(format!("expected an instance of a class that does, or another `{wanted}`"))
+                    .other(declared, format!("write `IMPLEMENTS {wanted}` here")),
             );
             return Some(None);
         }
@@ -245,7 +245,7 @@ impl<'s> Checker<'_, 's> {
                 "`{found}` does not extend `{expected}`: write `__QUERYINTERFACE({text}, variable)`, which asks the instance"
             )),
             (None, Some(_)) => error.help(format!("the instance that it points to is `{text}^`")),
-            (Some(_) | None, None) => error.help("what a variable of an INTERFACE refers to is called by it alone"),
+            (Some(_) | None, None) => error.help("call the METHODs of the instance through the variable of the INTERFACE"),
         });
         None
     }
@@ -264,7 +264,7 @@ impl<'s> Checker<'_, 's> {
         }
         let error = match called {
             Some(_) => Diagnostic::new(Code::E0306, name.span, format!("`{}` is a METHOD of `{title}`", name.text))
-                .label("it is called with parentheses")
+                .label("write parentheses to call it")
                 .help(format!("write `{}()`", name.text)),
             None => Diagnostic::new(Code::E0107, name.span, format!("`{title}` has no member `{}`", name.text))
                 .label("unknown member"),
@@ -280,8 +280,8 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn report_interface(&mut self, ty: Type, what: &str, span: Span) {
         let ty = self.type_name(ty);
         self.report(
-            Diagnostic::new(Code::E0211, span, format!("{what}, this is a variable of the INTERFACE `{ty}`"))
-                .label("its METHODs are called by its name, `variable.Method()`"),
+            Diagnostic::new(Code::E0211, span, format!("{what}, but this is a variable of the INTERFACE `{ty}`"))
+                .label("its METHODs are called through its name, `variable.Method()`"),
         );
     }
 }

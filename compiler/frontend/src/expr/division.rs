@@ -19,7 +19,7 @@ impl Checker<'_, '_> {
                 self.apply(op, ty, vec![a, b], ty, span)
             }
             ByZero::Reported if is_integer && self.context == Context::Body && (zero || b.as_const().is_none()) => {
-                self.warn_of_zero(zero, "each time it is a minor fault, and the result is the dividend", span);
+                self.warn_of_zero(zero, "each division is a minor fault, and its result is the dividend", span);
                 self.dividend_or_quotient(op, ty, (a, b), zero, span)
             }
             ByZero::Faults | ByZero::GivesZero | ByZero::Reported => self.apply(op, ty, vec![a, b], ty, span),

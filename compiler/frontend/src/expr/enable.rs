@@ -289,10 +289,10 @@ impl<'s> Checker<'_, 's> {
             _ => {}
         });
         let Some(name) = first else { return };
-        let message = format!("`{}` is always TRUE here: the body runs only while it is", name.text);
+        let message = format!("`{}` is always TRUE here: the body runs only while it is TRUE", name.text);
         self.report(
             Diagnostic::new(Code::W0526, name.span, message)
-                .label("a call with FALSE leaves the whole body out")
+                .label("a call with FALSE skips the whole body")
                 .help("give the input another name if the body is to run in each call"),
         );
     }

@@ -58,14 +58,15 @@ impl<'s> Checker<'_, 's> {
                 self.report_assignment(sides, *sign);
                 return None;
             }
-            let mut error = Diagnostic::new(Code::E0507, expr.span, format!("a condition is a BOOL, this is {name}"))
-                .label("expected BOOL");
+            let mut error =
+                Diagnostic::new(Code::E0507, expr.span, format!("a condition must be a BOOL, but this is {name}"))
+                    .label("expected BOOL");
             if matches!(found, Type::Elementary(it) if it.repr().is_integer()) && !text.contains(' ') {
                 error = error.help(format!("compare it: `{text} <> 0`")).fix(expr.span, format!("{text} <> 0"));
             } else if let Type::Block(id) = found
                 && id.info().pin("Q").is_some()
             {
-                error = error.help(format!("ask its output: `{text}.Q`")).fix(expr.span, format!("{text}.Q"));
+                error = error.help(format!("use its output: `{text}.Q`")).fix(expr.span, format!("{text}.Q"));
             }
             self.report(error);
             return None;
@@ -111,7 +112,7 @@ impl<'s> Checker<'_, 's> {
         };
         if self.context == Context::Initial && is_given {
             let error = super::unresolved::not_constant(span);
-            let what = format!("what `{}` is, each call says", variable.name.text);
+            let what = format!("each call gives `{}` its value", variable.name.text);
             self.report(error.other(variable.name.span, what).help("assign it at the start of the body"));
             return None;
         }
@@ -230,7 +231,7 @@ impl<'s> Checker<'_, 's> {
         if !numeric {
             let found = self.type_name(ty);
             self.report(
-                Diagnostic::new(Code::E0204, span, format!("`-` needs a number or a TIME, this is {found}"))
+                Diagnostic::new(Code::E0204, span, format!("`-` needs a number or a TIME, but this is {found}"))
                     .label(format!("this is {found}")),
             );
             return None;

@@ -130,7 +130,7 @@ impl<'s> Checker<'_, 's> {
     fn dispatched(&mut self, place: &Place, slot: usize, callee: Span, span: Span) -> Option<Option<Dispatch>> {
         let dispatch = self.dispatch(place, slot, callee, span);
         if dispatch.as_ref().is_some_and(|it| it.calls(|slot| self.decl.is_generic(slot))) {
-            let what = "a call of a METHOD with parameters of a generic type, by what may refer to several classes,";
+            let what = "a call of a METHOD with generic parameters, through a reference to several classes,";
             self.decl.not_supported(callee, what);
             return None;
         }
@@ -283,10 +283,10 @@ impl<'s> Checker<'_, 's> {
         let ty = formal.word.map_or_else(|| self.type_name(formal.resolved.ty), |it| it.name().to_owned());
         let code = if refused { Code::E0303 } else { Code::W0304 };
         if is_initial(owner) {
-            let message = format!("FB_init is given nothing for `{name}`");
+            let message = format!("no argument is given for `{name}` of FB_init");
             self.report(
                 Diagnostic::new(Code::E0303, span, message)
-                    .label("it runs at the start")
+                    .label("FB_init runs at the start")
                     .other(formal.name.span, "declared here, without an initial value")
                     .help(format!("write it after the type of the instance: `: Type({name} := …)`")),
             );

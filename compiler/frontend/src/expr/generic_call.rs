@@ -1,5 +1,5 @@
 //! Calls of generic FUNCTIONs: arguments of ANY, ANY_NUM and the like are evaluated as they are written; when all
-//! are known, they tell the types, and each is brought to its own.
+//! are known, they determine the types, and each is converted to its own.
 
 use super::argument::{Parts, Role, Source};
 use super::checker::Checker;
@@ -21,7 +21,7 @@ pub(crate) struct Called<'s> {
     pub span: Span,
 }
 
-/// A part of a call whose type the call has to tell.
+/// A part of a call whose type the call determines.
 pub(crate) struct Open {
     part: usize,
     /// Which parameter it is given for.
@@ -91,7 +91,7 @@ impl<'s> Checker<'_, 's> {
         expected.filter(|it| self.admits(word, *it, called.span))
     }
 
-    /// The slot of the FUNCTION with the types that its open parts tell.
+    /// The slot of the FUNCTION with the types of its open parts.
     pub(crate) fn told_instance(&mut self, parts: &Parts, open: &[Open], called: Called<'s>) -> Option<usize> {
         let words = self.decl.pous[called.slot].words.clone();
         let types = words.into_iter().map(|word| self.told_type(parts, open, word, called)).collect::<Option<_>>()?;
@@ -116,7 +116,7 @@ impl<'s> Checker<'_, 's> {
         let operands: Vec<_> = own().filter_map(|it| Some((it.operand.as_ref()?, parts.parts[it.part].span))).collect();
         if operands.is_empty() {
             let message =
-                format!("nothing says which type `{}` is in this call of `{}`", word.name(), called.name.text);
+                format!("nothing determines which type `{}` is in this call of `{}`", word.name(), called.name.text);
             self.report(
                 Diagnostic::new(Code::E0303, called.span, message).label("an argument of this type is missing"),
             );
@@ -143,8 +143,8 @@ impl<'s> Checker<'_, 's> {
         if !self.decl.program.is_open(ty) {
             return Some(());
         }
-        let message = format!("{} is no type that a generic parameter can be", self.type_name(ty));
-        self.report(Diagnostic::new(Code::E0411, span, message).label("its bounds are others in each call"));
+        let message = format!("a generic parameter cannot be {}", self.type_name(ty));
+        self.report(Diagnostic::new(Code::E0411, span, message).label("its bounds differ from call to call"));
         None
     }
 

@@ -214,7 +214,7 @@ fn tag_name(instructions: &[Instruction], arguments: &[ast::Argument<'_>]) -> &'
     names.iter().copied().find(is_given).unwrap_or(names[0])
 }
 
-/// What instructions of one name work on: `a COUNTER or a TIMER`.
+/// What instructions with the same name work on: `a COUNTER or a TIMER`.
 fn structures(instructions: &[Instruction]) -> String {
     let names: Vec<_> = instructions.iter().map(|(id, _)| article(id.info().name)).collect();
     names.join(" or ")

@@ -49,7 +49,7 @@ impl<'s> Checker<'_, 's> {
             LiteralValue::String(chars) => Some(self.string_literal(chars, span)),
             LiteralValue::Error => None,
             LiteralValue::Enumerator(name) => {
-                self.error(Code::E0101, name.span, format!("`{}` belongs to no enumeration here", name.text));
+                self.error(Code::E0101, name.span, format!("no enumeration here has a value `{}`", name.text));
                 None
             }
         }
@@ -78,7 +78,7 @@ impl<'s> Checker<'_, 's> {
         staunch_runtime::format::time(&mut meant, ty, nanoseconds).ok()?;
         let is_taken = self.decl.dialect(span).takes_lower_units_that_overflow();
         let code = if is_taken { Code::W0525 } else { Code::E0214 };
-        let message = format!("`{unit}` is as much as the next longer unit, or more");
+        let message = format!("`{unit}` is at least one of the next longer unit");
         self.report(
             Diagnostic::new(code, span, message)
                 .label("only the first unit of a TIME may overflow")
@@ -145,7 +145,7 @@ impl<'s> Checker<'_, 's> {
         match operand {
             Operand::Typed(value) if is_negative => {
                 let found = self.type_name(value.ty);
-                self.error(Code::E0204, span, format!("`-` needs a number, this is {found}"));
+                self.error(Code::E0204, span, format!("`-` needs a number, but this is {found}"));
                 None
             }
             Operand::Typed(_) | Operand::Promoted(..) => self.coerce(operand, Type::Elementary(ty), span),
@@ -164,7 +164,7 @@ impl<'s> Checker<'_, 's> {
         let ty = prefix.text.to_ascii_uppercase();
         let text = self.decl.log.sources.text(span);
         let inner = text.split_once('\'').and_then(|it| it.1.strip_suffix('\''));
-        let error = Diagnostic::new(Code::E0201, span, format!("a text in single quotes is no {ty}"))
+        let error = Diagnostic::new(Code::E0201, span, format!("a string in single quotes is not a {ty}"))
             .label(format!("a {ty} is written in double quotes"));
         self.report(match inner.filter(|it| !it.contains('"')) {
             Some(inner) => {
@@ -267,7 +267,7 @@ impl<'s> Checker<'_, 's> {
         Some(Expr::new(resolved.ty, ExprKind::Const(value), at))
     }
 
-    /// A bare enumerator: of the expected enumeration, or the only one of that name.
+    /// A bare enumerator: of the expected enumeration, or the only one with this name.
     pub(crate) fn bare_enumerator(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Option<Expr>> {
         let at = self.at(name.span);
         if let Some(Type::Enum(id)) = expected
@@ -381,7 +381,7 @@ impl<'s> Checker<'_, 's> {
         // Beyond every IEC type; a further operation could overflow here.
         let value = value.filter(|it| it.unsigned_abs() <= 1 << 100);
         if value.is_none() {
-            self.error(Code::E0202, span, "the value of this expression fits no type");
+            self.error(Code::E0202, span, "no type can hold the value of this expression");
         }
         Some(value.map(|it| Operand::Integer(self.as_immediate([a, b], it, span))))
     }

@@ -93,7 +93,7 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
     ) -> Diagnostic {
         let (tag, name) = (self.source(given.tag), self.source(callee));
-        let message = format!("a preset and an accumulated value are no operands of `{name}` in Structured Text");
+        let message = format!("in Structured Text, `{name}` has no operands for the preset and the accumulated value");
         let error = Diagnostic::new(Code::E0302, given.span, message).label(format!("the {structure} holds them"));
         if let (Some(_), Some(first), Some(last)) = (given.rung, arguments.first(), arguments.last())
             && self.is_declared_so(given)
@@ -142,7 +142,7 @@ impl<'s> Checker<'_, 's> {
     fn of_block(&self, name: ast::Name<'s>, family: Family, given: &Operands<'_, 's>) -> Diagnostic {
         let (tag, text) = (self.source(given.tag), name.text);
         let error =
-            Diagnostic::new(Code::E0305, name.span, format!("`{text}` is called here as Logix lists its operands"))
+            Diagnostic::new(Code::E0305, name.span, format!("this call of `{text}` lists its operands as in Logix"))
                 .label(format!("a bare `{text}` is a FUNCTION_BLOCK of {}", family.name()));
         let logix = format!(
             "for the counter of Logix declare `{}`, and write `LOGIX.{text}({tag}, RungIn := {})`",
@@ -167,7 +167,7 @@ impl<'s> Checker<'_, 's> {
     fn of_timer(&self, name: ast::Name<'s>, given: &Operands<'_, 's>) -> Diagnostic {
         let (tag, text) = (self.source(given.tag), name.text);
         let error =
-            Diagnostic::new(Code::E0305, name.span, format!("`{text}` is called here as Logix lists its operands"));
+            Diagnostic::new(Code::E0305, name.span, format!("this call of `{text}` lists its operands as in Logix"));
         let logix = format!(
             "for the timer of Logix declare `{}`, and write `LOGIX.{text}({tag}, RungIn := {})`",
             self.declaration(given, "LOGIX.TIMER"),

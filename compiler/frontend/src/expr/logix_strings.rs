@@ -20,12 +20,12 @@ const INSTRUCTIONS: [Instruction; 14] = [
     ("STOD", &["Source", "Dest"], "write `{2} := STRING_TO_DINT({1});`"),
     ("RTOS", &["Source", "Dest"], "write `{2} := REAL_TO_STRING({1});`"),
     ("STOR", &["Source", "Dest"], "write `{2} := STRING_TO_REAL({1});`"),
-    ("UPPER", &["Source", "Dest"], "replace its characters one by one, by `MID` and `REPLACE`"),
-    ("LOWER", &["Source", "Dest"], "replace its characters one by one, by `MID` and `REPLACE`"),
+    ("UPPER", &["Source", "Dest"], "replace its characters one by one, with `MID` and `REPLACE`"),
+    ("LOWER", &["Source", "Dest"], "replace its characters one by one, with `MID` and `REPLACE`"),
     (
         "SWPB",
         &["Source", "Order", "Dest"],
-        "rotate the bytes, of an INT by `{3} := WORD_TO_INT(ROL(INT_TO_WORD({1}), 8));`",
+        "rotate the bytes; for an INT: `{3} := WORD_TO_INT(ROL(INT_TO_WORD({1}), 8));`",
     ),
     ("BTDT", &["BTDT_tag"], "assign the bits: `dest := target; dest.4 := source.0;`"),
     ("MVMT", &["MVMT_tag"], "combine the operands: `dest := (dest AND NOT mask) OR (source AND mask);`"),
@@ -53,7 +53,7 @@ impl<'s> Checker<'_, 's> {
         }
         let takes = operands.join(", ");
         let message = format!("the instruction `{word}({takes})` of Logix is not supported");
-        let label = if is_function { "`{}` is a function here" } else { "there is no such function here" };
+        let label = if is_function { "`{}` is a function here" } else { "this dialect has no such function" };
         let mut error = Diagnostic::new(Code::E0902, if is_function { span } else { name.span }, message)
             .label(label.replace("{}", word));
         let help = match given {
@@ -71,7 +71,7 @@ impl<'s> Checker<'_, 's> {
     fn written(&self, form: &str, given: &[&ast::Expr<'s>]) -> String {
         let text = |at: usize| given.get(at).map_or("", |it| self.decl.log.sources.text(it.span));
         let start = given.get(2).and_then(|it| number(it));
-        // Where Logix begins with the character at a position, the standard goes on after it.
+        // Where Logix begins with the character at a position, the standard begins after it.
         let before = start.map_or_else(|| format!("{} - 1", text(2)), |it| it.saturating_sub(1).to_string());
         let from = match start {
             Some(1) => "",

@@ -61,7 +61,7 @@ impl<'s> Checker<'_, 's> {
         Some(self.convert(Conversion::Value, Type::Elementary(Elementary::Sint), byte))
     }
 
-    /// What to write for a member of a string that is no value.
+    /// What to write for a member of a string that is not a value.
     pub(super) fn help_on_text_member(&self, name: ast::Name<'s>) -> Option<&'static str> {
         let is = |it: &str| name.text.eq_ignore_ascii_case(it);
         match self.decl.dialect(name.span) {

@@ -1,4 +1,4 @@
-//! The counters of FOR loops. One that is no storage of its own, a member of a UNION or what a reference leads to, is
+//! The counters of FOR loops. One without its own storage, a member of a UNION or the target of a reference, is
 //! counted in a local: that is given to the variable before each turn, and taken from it after it.
 
 use super::checker::Checker;
@@ -19,7 +19,7 @@ impl Checker<'_, '_> {
         self.write(shown.place.clone(), shown.view, value, span);
     }
 
-    /// Before a turn of the innermost loop ends: the loop goes on from what the variable is.
+    /// Before a turn of the innermost loop ends: the loop continues from the variable's value.
     pub(crate) fn take_counter(&mut self, span: Span) {
         let Some(innermost) = self.counters.last().filter(|it| it.depth == self.loops) else { return };
         let Some(shown) = innermost.shown.clone() else { return };

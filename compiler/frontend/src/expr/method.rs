@@ -95,8 +95,10 @@ impl<'s> Checker<'_, 's> {
                 (Some(base), None) => {
                     Diagnostic::new(Code::E0305, span, format!("`{}` has no body to call", base.text))
                 }
-                (None, _) => Diagnostic::new(Code::E0101, span, format!("`{}` extends nothing", home.name.text))
-                    .label("SUPER is what a FUNCTION_BLOCK extends"),
+                (None, _) => {
+                    Diagnostic::new(Code::E0101, span, format!("`{}` does not extend anything", home.name.text))
+                        .label("SUPER means the FUNCTION_BLOCK that this one extends")
+                }
             };
             self.report(error);
         }
@@ -112,7 +114,7 @@ impl<'s> Checker<'_, 's> {
         let &ast::Pou { name: declared, kind, .. } = self.decl.pous[routine].ast;
         let word = if matches!(kind, PouKind::Getter | PouKind::Setter) { "PROPERTY" } else { "METHOD" };
         self.report(
-            Diagnostic::new(Code::E0320, span, format!("`{}` is ABSTRACT, so SUPER has none to call", declared.text))
+            Diagnostic::new(Code::E0320, span, format!("`{}` is ABSTRACT, so SUPER cannot call it", declared.text))
                 .label(format!("this {word} has no body"))
                 .other(declared.span, "declared here without a body")
                 .help(format!("delete the call, or declare the {word} without ABSTRACT and write its body")),
@@ -574,13 +576,12 @@ impl<'s> Checker<'_, 's> {
         }
         let this = self.this().filter(|_| self.this_structure.is_some() || self.is_function_block());
         if this.is_none() {
-            let error =
-                Diagnostic::new(Code::E0101, name.span, "THIS is the instance of a FUNCTION_BLOCK, which this is not")
-                    .label("there is no instance here");
+            let error = Diagnostic::new(Code::E0101, name.span, "THIS exists only in a FUNCTION_BLOCK")
+                .label("no instance exists here");
             let holds = |it: Span| it.file == name.span.file && (it.start..it.end).contains(&name.span.start);
             let is_in_type = self.decl.types.iter().any(|it| holds(it.decl.ty.span));
             self.report(match is_in_type {
-                true => error.help("a variable of this TYPE is in what is no FUNCTION_BLOCK: declare it in one"),
+                true => error.help("a variable of this TYPE is declared outside FUNCTION_BLOCKs: declare it in one"),
                 false => error,
             });
         }

@@ -79,7 +79,7 @@ impl<'s> Checker<'_, 's> {
             }
         };
         let message = format!("the pin `{}` is called `{own}` in {system}", name.text);
-        let lint = Diagnostic::new(Code::W0609, name.span, message).label("a name that the move changes");
+        let lint = Diagnostic::new(Code::W0609, name.span, message).label("the move changes this name");
         let lint = lint.help(format!("write `{own}`, or give the inputs by position")).fix(name.span, own);
         self.report(lint);
         ast::Name { text: own, span: name.span }
@@ -257,12 +257,12 @@ impl<'s> Checker<'_, 's> {
         let never = |it: Option<&ast::Expr<'s>>| it.is_some_and(|it| is_beyond(it) || is_above && is_preset(it));
         if is_above && own && !negative || presets().all(never) {
             self.report(
-                Diagnostic::new(Code::W0602, span, format!("`{}.CV` does not pass its preset", counter.text))
+                Diagnostic::new(Code::W0602, span, format!("`{}.CV` never passes its preset", counter.text))
                     .label("the counter stops at PV, so this never holds")
-                    .note("only where PV is negative, or lowered under the count, can CV lie above it")
+                    .note("CV is above PV only where PV is negative or is lowered below the count")
                     .help(match reached {
                         true => "compare with `>=`, or use the output `Q`",
-                        false => "no count is so great: compare with one up to PV, or raise PV",
+                        false => "the count never gets that high: compare with a value up to PV, or raise PV",
                     }),
             );
         }
@@ -278,7 +278,7 @@ impl<'s> Checker<'_, 's> {
         } else if info.pin_for(PinRole::Up).is_some() && info.pin_for(PinRole::Down).is_some() {
             "an edge of the other input that arrives in this scan is not counted"
         } else if moves {
-            "an edge that arrives in this scan is not counted, if the preset has moved"
+            "an edge that arrives in this scan is not counted, if the preset has changed"
         } else {
             return;
         };

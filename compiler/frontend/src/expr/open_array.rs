@@ -45,7 +45,7 @@ impl<'s> Checker<'_, 's> {
         let (Some(array), Some(dimension), 2) = (value(0, "ARR"), value(1, "DIM"), arguments.len()) else {
             self.report(
                 Diagnostic::new(Code::E0302, span, format!("`{}` takes 2 arguments", name.text))
-                    .label("expected an array, and which of its dimensions is meant")
+                    .label("expected an array, and the number of one of its dimensions")
                     .note("they are ARR, DIM"),
             );
             return Some(None);
@@ -57,7 +57,7 @@ impl<'s> Checker<'_, 's> {
         let found = self.place(array)?.place;
         let Type::Array(id) = found.ty else {
             let ty = self.type_name(found.ty);
-            let message = format!("an array is expected, this is {ty}");
+            let message = format!("expected an array, but this is {ty}");
             self.report(Diagnostic::new(Code::E0201, array.span, message).label("expected an array"));
             return None;
         };
@@ -89,7 +89,7 @@ impl<'s> Checker<'_, 's> {
         let count = self.dimensions(array).len();
         let value = self.typed(expr, Some(Type::DINT))?;
         let Some(number) = value.as_const().and_then(Value::as_integer) else {
-            self.decl.not_supported(expr.span, "a dimension that is no constant");
+            self.decl.not_supported(expr.span, "a dimension that is not a constant");
             return None;
         };
         let position = usize::try_from(number - 1).ok().filter(|it| *it < count);

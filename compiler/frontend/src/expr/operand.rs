@@ -131,7 +131,7 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0201,
                     span,
-                    format!("{} is expected, not a number", crate::diagnostic::wording::article(ty.name())),
+                    format!("expected {}, found a number", crate::diagnostic::wording::article(ty.name())),
                 )
                 .label(format!("expected {}", ty.name()))
                 .help(self.example(ty, value, span)),
@@ -193,14 +193,14 @@ impl<'s> Checker<'_, 's> {
         number.value(ty.repr())
     }
 
-    /// What a literal looks like of a type that a number is no value of.
+    /// An example of a literal of a type that has no plain numbers.
     fn example(&self, ty: Elementary, number: i128, span: Span) -> String {
         let rules = self.decl.dialect(span).rules();
         match ty {
             Elementary::Date | Elementary::Ldate => "write the date: `D#2024-02-29`".to_owned(),
             Elementary::Tod | Elementary::Ltod => "write the time of day: `TOD#23:59:59.5`".to_owned(),
             Elementary::Dt | Elementary::Ldt => "write date and time of day: `DT#2024-02-29-23:59:59.5`".to_owned(),
-            _ if rules.limits(ty).is_some_and(|it| number < it.0) => "no duration is below `T#0s` here".to_owned(),
+            _ if rules.limits(ty).is_some_and(|it| number < it.0) => "a duration cannot be negative here".to_owned(),
             _ => format!("write the unit: `T#{number}ms`"),
         }
     }

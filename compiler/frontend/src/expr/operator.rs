@@ -197,7 +197,7 @@ impl<'s> Checker<'_, 's> {
             let bits = [a, b].into_iter().find(|it| it.is_bits() && *it != Elementary::Bool);
             error = match bits {
                 Some(bits) => error.help(format!(
-                    "a bit string is made a number with `{}_TO_{}(…)`",
+                    "convert the bit string to a number with `{}_TO_{}(…)`",
                     bits.name(),
                     as_number(bits).name()
                 )),
@@ -257,7 +257,7 @@ impl<'s> Checker<'_, 's> {
                 }
             }
             (Some(Type::BOOL), None) if is_junction(sides.op) => {
-                Some(format!("each side of {0} is a comparison of its own: `x = 1 {0} x = 2`", sides.op.text()))
+                Some(format!("each side of {0} is a separate comparison: `x = 1 {0} x = 2`", sides.op.text()))
             }
             (Some(Type::BOOL), None) if a.contains(['<', '>', '=']) => {
                 Some("join two comparisons: `low < x AND x < high`".to_owned())
@@ -546,7 +546,7 @@ pub(crate) struct Sides {
     pub hint: Option<Type>,
 }
 
-/// What an operand beside `a` is expected to be.
+/// The expected type of the other operand next to `a`.
 pub(crate) fn beside(a: &Operand, hint: Option<Type>) -> Option<Type> {
     match a.ty() {
         Some(ty @ Type::Enum(_)) => Some(ty),
@@ -632,14 +632,14 @@ fn is_double(side: &Operand) -> bool {
     matches!(side, Operand::Real { .. }) || side.computed_at() == Some(Type::LREAL)
 }
 
-/// What is a `long` in C, and counts as a shorter integer: `-2147483648`, of which the sign is no part, and what is
+/// What is a `long` in C, and counts as a shorter integer: `-2147483648`, whose sign is an operator, and what is
 /// computed with that.
 fn is_long(side: &Operand) -> bool {
     let is_least = matches!(side, Operand::Integer(value) if *value == i128::from(i32::MIN));
     is_least || side.computed_at() == Some(Type::LINT)
 }
 
-/// The types of which a number is the first that holds it, where the type beside it does not.
+/// The types among which a number takes the first that holds it, where the other operand's type does not.
 pub(super) fn literal_types(value: i128, beside: Elementary, dialect: Dialect) -> [Elementary; 4] {
     let has_no_sign = value >= 0 && as_number(beside).is_integer() && beside.repr().is_unsigned();
     match dialect.rules().literals.choice {

@@ -68,8 +68,8 @@ impl Checker<'_, '_> {
         Place::local(id, ty)
     }
 
-    /// Runs `next`. What it hoists runs before the expression that it is in, so of what was
-    /// evaluated before, that is saved which would come out otherwise after it.
+    /// Runs `next`. Its hoisted statements run before the expression that it is in, so of the values
+    /// evaluated before, those are saved that would be different after it.
     pub(crate) fn after<T>(&mut self, done: &mut [&mut Expr], next: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         let mark = self.block.len();
         let result = next(self);
@@ -162,12 +162,12 @@ impl Checker<'_, '_> {
         self.save_indices(place, &|this, index, faults| fault_first && faults || this.changes(effects, index));
     }
 
-    /// Saves each index that is no constant: the place stays what it is, whatever runs after this.
+    /// Saves each index that is not a constant: the place stays what it is, whatever runs after this.
     pub(crate) fn fix(&mut self, place: &mut Place) {
         self.save_indices(place, &|_, index, _| index.as_const().is_none());
     }
 
-    /// Saves the indices that `asked` for, which is told whether they can fault. Their locals are of a
+    /// Saves the indices that `asked` accepts; it gets whether they can fault. Their locals are of a
     /// subrange with the array's bounds, so that nothing checks them again.
     fn save_indices(&mut self, place: &mut Place, asked: &dyn Fn(&Self, &Expr, bool) -> bool) {
         self.save_pointer(place, asked);

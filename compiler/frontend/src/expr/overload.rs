@@ -246,7 +246,7 @@ impl<'s> Checker<'_, 's> {
             return Some(expr);
         }
         let found = self.type_name(expr.ty);
-        let message = format!("`{}` takes {} as {parameter}, this is {found}", name.text, wanted(class));
+        let message = format!("`{}` takes {} as {parameter}, but this is {found}", name.text, wanted(class));
         let mut error = Diagnostic::new(Code::E0201, value.span, message).label(format!("this is {found}"));
         if let Type::Elementary(it) = expr.ty
             && class == Class::Int
@@ -302,7 +302,7 @@ impl<'s> Checker<'_, 's> {
         Some(ty)
     }
 
-    /// A bit string beside a number below 0 is one, where a dialect mixes them and the place does not ask for bits.
+    /// A bit string with a number below 0 is a number, where a dialect mixes them and the place does not ask for bits.
     fn beside_negatives<'o>(
         &self,
         class: Class,
@@ -384,7 +384,7 @@ impl<'s> Checker<'_, 's> {
 
     pub(crate) fn report_class(&mut self, class: Class, found: Type, span: Span, name: ast::Name<'s>) {
         let found = self.type_name(found);
-        let message = format!("`{}` takes {}, this is {found}", name.text, wanted(class));
+        let message = format!("`{}` takes {}, but this is {found}", name.text, wanted(class));
         self.report(Diagnostic::new(Code::E0204, span, message).label(format!("this is {found}")));
     }
 
@@ -450,7 +450,7 @@ impl<'s> Checker<'_, 's> {
         }
         let found = self.type_name(text.ty);
         let wanted = if wide == Some(true) { "WSTRING" } else { "STRING" };
-        let message = format!("`{}` takes a {wanted}, this is {found}", name.text);
+        let message = format!("`{}` takes a {wanted}, but this is {found}", name.text);
         self.report(Diagnostic::new(Code::E0201, value.span, message).label(format!("expected {wanted}")));
         None
     }
@@ -462,7 +462,7 @@ pub(super) fn kind(signature: &Signature, at: usize) -> Kind {
     signature.parameters[at.min(last)].kind
 }
 
-/// The names of the parameters for so many arguments: IN1, IN2, … go on as long as arguments do.
+/// The names of the parameters for so many arguments: IN1, IN2, … continue as long as arguments do.
 pub(super) fn parameter_names(signature: &Signature, arguments: usize) -> Vec<Cow<'static, str>> {
     let own = signature.parameters.len();
     let count = if signature.extensible { arguments.max(own) } else { own };

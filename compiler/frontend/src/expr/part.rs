@@ -58,7 +58,7 @@ impl<'s> Checker<'_, 's> {
         let Some(shift) = shift.filter(|it| it + size <= width) else {
             let found = self.type_name(ty);
             self.report(
-                Diagnostic::new(Code::E0208, part.span, format!("`.{}` lies outside {found}", part.text))
+                Diagnostic::new(Code::E0208, part.span, format!("`.{}` is outside {found}", part.text))
                     .label(format!("{found} has {width} bits, the first is 0")),
             );
             return None;

@@ -118,9 +118,9 @@ impl<'s> Checker<'_, 's> {
             let name = self.decl.log.sources.text(callee.span);
             Some(match self.static_type(callee) {
                 Some(Type::Struct(_) | Type::Block(_)) => {
-                    format!("call it before, `{name}(…);`, and read its output then: `{name}.…`")
+                    format!("call it first, `{name}(…);`, then read its output: `{name}.…`")
                 }
-                Some(_) | None => "put its result into a variable first, and name that here".to_owned(),
+                Some(_) | None => "assign its result to a variable first, and use that here".to_owned(),
             })
         } else {
             None
@@ -193,11 +193,11 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn report_unknown_constant(&mut self, name: ast::Name<'s>) {
         self.report(
             Diagnostic::new(Code::E0402, name.span, format!("the value of `{}` is not known here", name.text))
-                .label("it needs itself, or its declaration is wrong"),
+                .label("it depends on itself, or its declaration is wrong"),
         );
     }
 
-    /// Reports a variable of the POU around that a METHOD or ACTION cannot reach: it is there while the POU's
+    /// Reports a variable of the POU around that a METHOD or ACTION cannot reach: it exists while the POU's
     /// own body runs.
     fn is_within_reach(&mut self, variable: &Variable<'s>, name: ast::Name<'s>) -> bool {
         if self.scope.outer.is_none() {
@@ -218,7 +218,7 @@ impl<'s> Checker<'_, 's> {
         };
         self.report(
             Diagnostic::new(Code::E0109, name.span, format!("`{}` is a {section} of the POU around", name.text))
-                .label("it is there during a call of the POU itself only")
+                .label("it exists only during a call of the POU itself")
                 .other(variable.name.span, "declared here")
                 .help(help),
         );
@@ -361,7 +361,7 @@ impl<'s> Checker<'_, 's> {
                 let of_text = matches!(self.type_of(&found), Type::String(_)).then(|| self.help_on_text_member(name));
                 let ty = self.type_name(self.type_of(&found));
                 let error = Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
-                    .label(format!("`{}` cannot be part of {ty}", name.text));
+                    .label(format!("{ty} cannot have a member `{}`", name.text));
                 self.report(match of_text.flatten() {
                     Some(help) => error.help(help),
                     None => self.through_reference(error, self.type_of(&found), base, name),
@@ -396,7 +396,7 @@ impl<'s> Checker<'_, 's> {
             let owner = self.type_name(found.place.ty);
             self.report(
                 Diagnostic::new(Code::E0109, name.span, format!("`{}` is a VAR_IN_OUT of `{owner}`", name.text))
-                    .label("it stands for a variable of the caller, during a call only")
+                    .label("it stands for a variable of the caller, and only during a call")
                     .other(declared, "declared here")
                     .help(format!("use the variable that the call is given: `{} := variable`", name.text)),
             );
@@ -488,7 +488,7 @@ impl<'s> Checker<'_, 's> {
         own.then_some(variable)
     }
 
-    /// A member that all instances share: it lies at an address, or is VAR_STAT.
+    /// A member that all instances share: it has an address, or is VAR_STAT.
     fn shared_member(&mut self, instance: &Place, id: StructId, name: ast::Name<'s>) -> Option<Option<Found<'s>>> {
         let variable = self.seen_from_outside(id, name).filter(|it| it.place.root == Root::Globals)?;
         // Nothing would check the index of an element whose own storage is not looked at.
@@ -562,14 +562,14 @@ impl<'s> Checker<'_, 's> {
             }
             let Type::Array(id) = self.type_of(&found) else {
                 let ty = self.type_name(self.type_of(&found));
-                let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} has no index here"))
+                let error = Diagnostic::new(Code::E0302, index.span, format!("{ty} cannot be indexed here"))
                     .label("one index too many, or not an array");
                 let (text, at) = (self.decl.log.sources.text(base.span), self.decl.log.sources.text(index.span));
                 self.report(match self.type_of(&found) {
                     Type::String(_) if indices.len() == 1 && has_characters(self.decl.dialect(index.span)) => {
-                        Diagnostic::new(Code::E0306, index.span, format!("`{text}[{at}]` is no variable of its own"))
-                            .label("a character of a string: it can be read, and assigned with `:=`")
-                            .help("use a variable here, and assign that")
+                        Diagnostic::new(Code::E0306, index.span, format!("`{text}[{at}]` is not a separate variable"))
+                            .label("a character of a string can only be read, or assigned with `:=`")
+                            .help("use a separate variable here, and assign it")
                     }
                     Type::String(_) => {
                         let at = character(at);
@@ -635,8 +635,12 @@ impl<'s> Checker<'_, 's> {
             other => {
                 let found = self.type_name(other);
                 self.report(
-                    Diagnostic::new(Code::E0201, index.span, format!("an index is an integer, this is {found}"))
-                        .label("expected an integer"),
+                    Diagnostic::new(
+                        Code::E0201,
+                        index.span,
+                        format!("an index must be an integer, but this is {found}"),
+                    )
+                    .label("expected an integer"),
                 );
                 None
             }
@@ -652,7 +656,7 @@ impl<'s> Checker<'_, 's> {
         let ty = self.type_name(index.declared());
         self.report(
             Diagnostic::new(Code::W0515, span, format!("the index is {}", crate::diagnostic::wording::article(&ty)))
-                .label(format!("the array goes from {} to {}: beyond it is a fault", array.low, array.high))
+                .label(format!("the array goes from {} to {}: an index outside is a fault", array.low, array.high))
                 .help("give the subrange and the array the same limits"),
         );
     }
@@ -751,7 +755,7 @@ impl<'s> Checker<'_, 's> {
             Access::Result => {
                 self.report(
                     Diagnostic::new(Code::E0306, span, "a variable is expected here")
-                        .label("this is a value, which a call gave")
+                        .label("this is a value, the result of a call")
                         .help("copy it to a variable first"),
                 );
                 false

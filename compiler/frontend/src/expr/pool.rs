@@ -154,16 +154,16 @@ impl<'s> Checker<'_, 's> {
         let name = self.type_name(element);
         let help = match self.decl.held_instance(element) {
             Some(_) => format!(
-                "such arrays are of values alone: declare `{{pool 4}}` before `{name}`, with the most objects at a time, \
-                 and make each by a `__NEW({name})`"
+                "only arrays of values can be made so: declare `{{pool 4}}` before `{name}`, with the largest number of objects, \
+                 and make each with `__NEW({name})`"
             ),
             None => format!(
-                "declare one: `{{pool 4}} TYPE Some : ARRAY[0..99] OF {name}; END_TYPE`, with the most arrays at a time, \
-                 and the most elements of one"
+                "declare one: `{{pool 4}} TYPE Some : ARRAY[0..99] OF {name}; END_TYPE`, with the largest number of arrays at a time, \
+                 and the largest number of elements"
             ),
         };
         self.report(
-            Diagnostic::new(Code::E0413, span, format!("there is no pool with arrays of {name}"))
+            Diagnostic::new(Code::E0413, span, format!("no pool of arrays of {name} is declared"))
                 .label("a program has no heap")
                 .help(help),
         );
@@ -178,7 +178,7 @@ impl<'s> Checker<'_, 's> {
         let name = self.type_name(ty);
         if let Some(span) = self.is_abstract(ty) {
             self.report(
-                Diagnostic::new(Code::E0413, named.span, format!("`{name}` is ABSTRACT: there are no objects of it"))
+                Diagnostic::new(Code::E0413, named.span, format!("`{name}` is ABSTRACT: it has no objects"))
                     .label("a FUNCTION_BLOCK that extends it is expected here")
                     .other(span, "declared so here"),
             );
@@ -186,7 +186,7 @@ impl<'s> Checker<'_, 's> {
         }
         // Said once of each type.
         self.decl.pools.insert(ty, None);
-        let message = format!("`{name}` has no pool that `__NEW` could take an object from");
+        let message = format!("`{name}` has no pool for `__NEW` to take an object from");
         let error = Diagnostic::new(Code::E0413, named.span, message).label("a program has no heap");
         self.report(self.with_pragma(error, ty));
         None
@@ -195,20 +195,16 @@ impl<'s> Checker<'_, 's> {
     fn type_named(&mut self, named: &ast::Expr<'s>) -> Option<Type> {
         if let Some(word) = ["STRING", "WSTRING"].into_iter().find(|it| is_named(named, it)) {
             self.report(
-                Diagnostic::new(
-                    Code::E0413,
-                    named.span,
-                    format!("a {word} has no pool that `__NEW` could take it from"),
-                )
-                .label("a program has no heap")
-                .help(format!(
-                    "make it a member: `{{pool 16}} TYPE Text : STRUCT value : {word}(80); END_STRUCT END_TYPE`"
-                )),
+                Diagnostic::new(Code::E0413, named.span, format!("a {word} has no pool for `__NEW` to take it from"))
+                    .label("a program has no heap")
+                    .help(format!(
+                        "make it a member: `{{pool 16}} TYPE Text : STRUCT value : {word}(80); END_STRUCT END_TYPE`"
+                    )),
             );
             return None;
         }
         let ty = self.type_of_path(named);
-        // What is no expression has been reported.
+        // A missing expression has been reported.
         if ty.is_none() && !matches!(named.kind, ast::ExprKind::Error(_)) && !self.reports_unknown_type(named) {
             self.report(
                 Diagnostic::new(Code::E0413, named.span, "`__NEW` makes objects of a type")
@@ -270,13 +266,13 @@ impl<'s> Checker<'_, 's> {
             | Type::Reference(_) => {
                 let name = self.type_name(ty);
                 return error.help(format!(
-                    "declare one: `{{pool 16}} TYPE Some : {name}; END_TYPE`, with the most objects that there are at a time"
+                    "declare one: `{{pool 16}} TYPE Some : {name}; END_TYPE`, with the largest number of objects at a time"
                 ));
             }
         };
         let name = self.type_name(ty);
         error.help(format!(
-            "write `{{pool 16}}` before `{word} {name}`, with the most objects that there are at a time in place of 16"
+            "write `{{pool 16}}` before `{word} {name}`, with the largest number of objects at a time in place of 16"
         ))
     }
 
@@ -427,8 +423,12 @@ impl<'s> Checker<'_, 's> {
         let Some(target) = target else {
             let found = self.type_name(ty);
             self.report(
-                Diagnostic::new(Code::E0211, span, format!("`__DELETE` takes a POINTER TO an object, this is {found}"))
-                    .label("expected the variable that `__NEW` was assigned to"),
+                Diagnostic::new(
+                    Code::E0211,
+                    span,
+                    format!("`__DELETE` takes a POINTER TO an object, but this is {found}"),
+                )
+                .label("expected the variable that `__NEW` was assigned to"),
             );
             return None;
         };
@@ -458,9 +458,8 @@ impl<'s> Checker<'_, 's> {
         if pools.is_empty() {
             let name = self.type_name(title);
             types.iter().for_each(|it| drop(self.decl.pools.insert(*it, None)));
-            let message = format!("there is no pool with objects of `{name}`");
-            let error =
-                Diagnostic::new(Code::E0413, span, message).label("`__DELETE` gives an object back to its pool");
+            let message = format!("`{name}` has no pool");
+            let error = Diagnostic::new(Code::E0413, span, message).label("`__DELETE` returns an object to its pool");
             self.report(match title {
                 Type::Reference(_) => error.help("write `{pool 16}` before the FUNCTION_BLOCKs that `__NEW` makes"),
                 _ => self.with_pragma(error, title),

@@ -22,7 +22,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(first) = arguments.first() {
             self.report(
                 Diagnostic::new(Code::E0302, first.span, format!("`{}` takes no arguments", name.text))
-                    .label("it says where it is itself"),
+                    .label("it gives the position where it is written"),
             );
             return Some(None);
         }

@@ -1,5 +1,5 @@
 //! Promotion: where a dialect computes integers of fewer than 32 bits at 32, a value is a DINT until
-//! it is stored. Until then it has the type that its operands give it beside the one it is computed at.
+//! it is stored. Until then it has the type that its operands give it in addition to the one it is computed at.
 
 use super::checker::Checker;
 use crate::Span;

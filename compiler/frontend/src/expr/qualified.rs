@@ -22,7 +22,7 @@ impl<'s> Checker<'_, 's> {
             || self.decl.lookup(path, sense) != Found::Nothing
     }
 
-    /// The path that an expression is, where its first name is no variable and nothing that is declared.
+    /// The path that an expression is, if its first name is not a variable or any other declaration.
     fn namespace_path(&self, expr: &ast::Expr<'s>) -> Option<ast::Path<'s>> {
         let first = expr.first_name()?;
         if self.scope.get(first.text).is_some() || self.decl.declared(first).is_some() {
@@ -80,7 +80,7 @@ impl<'s> Checker<'_, 's> {
         })
     }
 
-    /// The path of an enumerator. A variable hides a type of its name, unless it is an enumeration, which
+    /// The path of an enumerator. A variable hides a type with its name, unless it is an enumeration, which
     /// has no members: `state := State.Idle`.
     pub(crate) fn path_of_enumerator(&mut self, expr: &ast::Expr<'s>) -> Option<ast::Path<'s>> {
         let first = expr.first_name()?;
@@ -152,7 +152,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
             _ => "a namespace",
         };
         Diagnostic::new(code, span, format!("`{full}` is {what}"))
-            .label("expected something that it holds")
+            .label("expected a name declared in it")
             .help(format!("write its name after it: `{full}.name`"))
     }
 
@@ -180,7 +180,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         };
         let error = Diagnostic::new(code, name.span, what).label("unknown name");
         if self.names.holders(name.text).iter().any(|(it, internal)| *internal && it.eq_ignore_ascii_case(&full)) {
-            return error.help(format!("`{full}.{}` is INTERNAL, and not seen from here", name.text));
+            return error.help(format!("`{full}.{}` is INTERNAL, and not visible here", name.text));
         }
         match space.and_then(|it| nearest(name.text, self.names.names_in(it))) {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
@@ -226,11 +226,11 @@ impl<'s> crate::types::declarations::Declarations<'s> {
             );
         }
         if unit.is_some() || !is_value && functions::exists_in(text, site.dialect) {
-            return Some(error.label("it is in no library").help(format!("write `{text}`")).fix(place, text));
+            return Some(error.label("no library has it").help(format!("write `{text}`")).fix(place, text));
         }
         Some(
             error
-                .label("it is not among what is bundled of the library")
+                .label("the part of the library that is bundled with Staunch does not have it")
                 .help("name its source, or a declaration of it, in `libraries` of staunch.toml"),
         )
     }
@@ -242,7 +242,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         let hidden = self.names.hidden(site, self.names.space_at(site, path)?)?;
         let around = hidden.rsplit_once('.').map_or(hidden, |it| it.0);
         let error = Diagnostic::new(code, first.span.to(last.span), format!("the namespace `{hidden}` is INTERNAL"));
-        Some(error.label(format!("not seen from outside of `{around}`")))
+        Some(error.label(format!("it is visible only inside `{around}`")))
     }
 
     /// Where a name that means nothing by itself is declared.
@@ -250,7 +250,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         let holders = self.names.holders(name.text);
         let (space, internal) = holders.first()?;
         Some(if *internal {
-            format!("`{space}.{}` is INTERNAL, and not seen from here", name.text)
+            format!("`{space}.{}` is INTERNAL, and not visible here", name.text)
         } else {
             format!("write `{space}.{}`, or `USING {space};` before it", name.text)
         })

@@ -1,4 +1,4 @@
-//! `__QUERYINTERFACE` and `__QUERYPOINTER`: whether the instance behind a variable of an INTERFACE is of a class that
+//! `__QUERYINTERFACE` and `__QUERYPOINTER`: whether the instance that a variable of an INTERFACE refers to is of a class that
 //! has another INTERFACE, or is of a pointer's class.
 
 use super::checker::Checker;
@@ -31,7 +31,7 @@ impl<'s> Checker<'_, 's> {
         else {
             self.report(
                 Diagnostic::new(Code::E0302, span, format!("`{}` takes 2 arguments", name.text))
-                    .label("an instance or a variable of an INTERFACE, and the variable that is to refer to it"),
+                    .label("an instance or a variable of an INTERFACE, and the variable that will refer to it"),
             );
             return Some(None);
         };
@@ -134,7 +134,7 @@ impl<'s> Checker<'_, 's> {
                 let value = self.typed(from, None)?;
                 let ty = self.type_name(value.ty);
                 self.report(
-                    Diagnostic::new(Code::E0211, from.span, format!("a query is for instances, this is {ty}"))
+                    Diagnostic::new(Code::E0211, from.span, format!("a query needs an instance, but this is {ty}"))
                         .label("expected an instance, or a variable of an INTERFACE"),
                 );
                 None
@@ -161,8 +161,8 @@ impl<'s> Checker<'_, 's> {
         let wanted = if wants_pointer { "POINTER TO a FUNCTION_BLOCK" } else { "variable of an INTERFACE" };
         let found = self.type_name(ty);
         self.report(
-            Diagnostic::new(Code::E0211, span, format!("a {wanted} is expected here, this is {found}"))
-                .label("it is to refer to the instance, or to nothing"),
+            Diagnostic::new(Code::E0211, span, format!("expected a {wanted}, but this is {found}"))
+                .label("it will refer to the instance, or be null"),
         );
         None
     }

@@ -1,7 +1,7 @@
 //! References: what makes them, what they lead to, and how they count, compare and convert.
 //!
 //! An address counts as an integer: the lower half of what a reference holds. It compares with integers and
-//! other addresses, and converts to one of 32 bits and more; back from an integer there is no way, but for 0.
+//! other addresses, and converts to one of 32 bits and more; an integer other than 0 does not convert back.
 
 use super::checker::Checker;
 use super::method::is_this;
@@ -20,7 +20,7 @@ use staunch_ir::{
 /// The lower half of a reference's bits: its address.
 const ADDRESS: u64 = 0xFFFF_FFFF;
 
-/// The same, with the number of the class: an instance and its first member lie at one address.
+/// The same, with the number of the class: an instance and its first member have the same address.
 const INSTANCE: u64 = ADDRESS | u64::MAX << staunch_runtime::reference::CLASS;
 
 /// What is called like a function, and takes a variable rather than its value.
@@ -89,14 +89,14 @@ impl<'s> Checker<'_, 's> {
             Some(_) | None => self.whole(found, inner.span)?,
         };
         if self.decl.interface_of(found.place.ty).is_some() {
-            self.report_interface(found.place.ty, "`^` follows a reference", span);
+            self.report_interface(found.place.ty, "`^` needs a reference", span);
             return None;
         }
         let Type::Reference(id) = found.place.ty else {
             let ty = self.type_name(found.place.ty);
             self.report(
-                Diagnostic::new(Code::E0211, span, format!("`^` follows a reference, this is {ty}"))
-                    .label("there is nothing to follow"),
+                Diagnostic::new(Code::E0211, span, format!("`^` needs a reference, but this is {ty}"))
+                    .label("this cannot be dereferenced"),
             );
             return None;
         };
@@ -126,7 +126,7 @@ impl<'s> Checker<'_, 's> {
         let [ast::Argument { kind: ArgumentKind::Positional(argument), .. }] = arguments else {
             self.report(
                 Diagnostic::new(Code::E0302, span, format!("`{}` takes 1 argument", name.text))
-                    .label("name the variable that is meant, and nothing else"),
+                    .label("expected one variable"),
             );
             return Some(None);
         };
@@ -176,8 +176,8 @@ impl<'s> Checker<'_, 's> {
         }
         if self.is_pin(&found) {
             self.report(
-                Diagnostic::new(Code::E0211, expr.span, "a part of a standard block has no address of its own")
-                    .label("nobody but the block writes it")
+                Diagnostic::new(Code::E0211, expr.span, "a pin of a standard block has no address of its own")
+                    .label("only the block writes it")
                     .help("take the address of the block itself, or copy the value to a variable"),
             );
             return None;
@@ -185,7 +185,7 @@ impl<'s> Checker<'_, 's> {
         if self.is_counter(&found.place, found.view) {
             self.report(
                 Diagnostic::new(Code::E0211, expr.span, "the counter of a loop around has no address")
-                    .label("the loop goes by it"),
+                    .label("the loop controls it"),
             );
             return None;
         }
@@ -285,7 +285,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What SIZEOF says of a type. Where an address counts as an integer of 32 bits, a pointer has its size, and so have the
-    /// elements of an array: code divides by one or the other. What is stored takes 8 bytes all the same.
+    /// elements of an array: code divides by one or the other. In memory it still takes 8 bytes.
     fn size_seen(&self, ty: Type, span: Span) -> u64 {
         let is_pointer = |ty| {
             let kind = self.ref_type(ty).map(|it| it.1.kind);
@@ -360,7 +360,7 @@ impl<'s> Checker<'_, 's> {
         }
         if !matches!(found.place.ty, Type::Reference(_)) {
             let ty = self.type_name(found.place.ty);
-            self.error(Code::E0211, argument.span, format!("`__ISVALIDREF` takes a reference, this is {ty}"));
+            self.error(Code::E0211, argument.span, format!("`__ISVALIDREF` takes a reference, but this is {ty}"));
             return None;
         }
         let reference = Expr::load(found.place, self.at(span));
@@ -381,7 +381,7 @@ impl<'s> Checker<'_, 's> {
         self.apply(op, Type::Elementary(Elementary::Lword), vec![bits, null], Type::BOOL, span)
     }
 
-    /// What a VAR_IN_OUT gets must be there when it is called: a reference that is null, or a variable behind one, is
+    /// The argument of a VAR_IN_OUT must exist when it is called: a reference that is null, or a variable it leads to, is
     /// a fault here.
     pub(crate) fn fault_at_null(&mut self, reference: &mut Expr, span: Span) -> Option<()> {
         if let ExprKind::AddressOf(place) = &reference.kind
@@ -409,7 +409,7 @@ impl<'s> Checker<'_, 's> {
         let Some((_, RefType { kind, .. })) = self.ref_type(found.place.ty) else {
             let ty = self.type_name(found.place.ty);
             self.report(
-                Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, this is {ty}"))
+                Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, but this is {ty}"))
                     .label("expected a REFERENCE TO"),
             );
             self.operand(value, None);
@@ -447,7 +447,7 @@ impl<'s> Checker<'_, 's> {
     fn report_bound_pointer(&mut self, ty: Type, kind: RefKind, value: &ast::Expr<'s>, span: Span) {
         let function = if kind == RefKind::RefTo { "REF" } else { "ADR" };
         let (ty, value) = (self.type_name(ty), self.decl.log.sources.text(value.span));
-        let error = Diagnostic::new(Code::E0211, span, format!("`REF=` sets a REFERENCE TO, this is {ty}"))
+        let error = Diagnostic::new(Code::E0211, span, format!("`REF=` sets a REFERENCE TO, but this is {ty}"))
             .label("it is assigned an address")
             .help(format!("write `{} := {function}({value});`", self.decl.log.sources.text(span)));
         self.report(error);
@@ -470,7 +470,7 @@ impl<'s> Checker<'_, 's> {
             _ => return None,
         };
         self.report(
-            Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, this is {ty}"))
+            Diagnostic::new(Code::E0211, target.span, format!("`REF=` sets a reference, but this is {ty}"))
                 .label("a VAR_IN_OUT is the caller's variable")
                 .other(decl.span, "declared here")
                 .help(format!("declare it as `REFERENCE TO {ty}` in VAR_INPUT")),
@@ -486,7 +486,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Whether the name is NULL, and no variable of that name.
+    /// Whether the name is NULL, and no variable has that name.
     pub(crate) fn is_null(&self, name: ast::Name<'s>) -> bool {
         name.text.eq_ignore_ascii_case("NULL") && self.scope.get(name.text).is_none()
     }
@@ -630,7 +630,7 @@ impl<'s> Checker<'_, 's> {
                 error.help(format!("write `{word}({text})`")).fix(span, format!("{word}({text})"))
             }
             Type::Elementary(it) if it.repr().is_integer() => {
-                error.help("an integer is not made a reference: keep the reference itself, and add to it")
+                error.help("an integer cannot become a reference: keep the reference itself, and add to it")
             }
             _ => error,
         });
@@ -705,7 +705,7 @@ impl<'s> Checker<'_, 's> {
                 let message = format!("`{}` does not take {} and {}", op.text(), operands[0], operands[1]);
                 self.report(
                     Diagnostic::new(Code::E0204, span, message)
-                        .label("a reference is compared, moved by a number of bytes, or subtracted from another"),
+                        .label("references are compared, moved by a number of bytes, or subtracted from each other"),
                 );
                 None
             }

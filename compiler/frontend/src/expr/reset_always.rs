@@ -57,7 +57,7 @@ impl<'s> Checker<'_, 's> {
                 format!("reset it under a condition: `IF {name}.Q THEN {name}(IN := FALSE); END_IF`"),
             ),
             Some(pin) => (
-                "its count does not add up",
+                "its count is lost each time",
                 format!("reset it in the call that counts, by a condition: `{} := stop`", pin.name),
             ),
         };

@@ -45,7 +45,7 @@ impl<'s> Checker<'_, 's> {
             self.report(several_counts(expr.span));
             return None;
         }
-        // The variable behind an in-out, or an instance around this one, may still be RETAIN.
+        // The variable that an in-out stands for, or an instance around this one, may still be RETAIN.
         let is_open = match found.place.root {
             Root::Param(_) => true,
             Root::Instance => self.is_function_block(),

@@ -47,7 +47,7 @@ impl<'s> Checker<'_, 's> {
         if resolved.own != Type::BOOL {
             return Some(resolved);
         }
-        let message = format!("`{}` takes a BYTE, WORD, DWORD or LWORD, this is BOOL", name.text);
+        let message = format!("`{}` takes a BYTE, WORD, DWORD or LWORD, but this is BOOL", name.text);
         self.report(Diagnostic::new(Code::E0204, name.span, message).label("a BOOL has one bit"));
         None
     }

@@ -305,7 +305,7 @@ impl<'s> Checker<'_, 's> {
     fn chosen(&mut self, resolved: Resolved, mut before: Vec<Block>, span: Span) -> Option<Operand> {
         let inputs = resolved.operands.get(1..)?;
         if before.iter().all(Vec::is_empty) && !inputs.iter().any(|it| self.can_fault(it)) {
-            // Nobody can tell.
+            // It is not known.
             return self.operation(Op::Sel, resolved, span);
         }
         let Resolved { ty, own, operands } = resolved;

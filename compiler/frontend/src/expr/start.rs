@@ -181,13 +181,9 @@ impl<'s> Checker<'_, 's> {
         if variable.constant && !matches!(variable.section, Section::Input | Section::InOut) {
             let name = variable.name;
             return self.report(
-                Diagnostic::new(
-                    Code::E0403,
-                    name.span,
-                    format!("`{}` is started by FB_init, and is CONSTANT", name.text),
-                )
-                .label("FB_init writes to it")
-                .help("declare it without CONSTANT"),
+                Diagnostic::new(Code::E0403, name.span, format!("`{}` is CONSTANT but has FB_init", name.text))
+                    .label("FB_init writes to it")
+                    .help("declare it without CONSTANT"),
             );
         }
         if variable.retain && self.decl.holds_addresses(variable.place.ty) {
@@ -198,7 +194,7 @@ impl<'s> Checker<'_, 's> {
                     name.span,
                     format!("`{}` is RETAIN, and its type has an address as an initial value", name.text),
                 )
-                .label("a restart keeps the variable, but for its references, which are null then")
+                .label("a restart keeps the variable, but its references become null")
                 .help("declare it without RETAIN, or assign the address in the body"),
             );
         }
@@ -237,7 +233,7 @@ impl<'s> Checker<'_, 's> {
         let Some(other) = other else { return true };
         self.report(
             Diagnostic::new(Code::E0403, other.span, "FB_exit has one input, `bInCopyCode`")
-                .label(format!("`__DELETE` gives no `{}`", other.text))
+                .label(format!("`__DELETE` does not pass `{}`", other.text))
                 .help("declare `VAR_INPUT bInCopyCode : BOOL; END_VAR` in it, and nothing else"),
         );
         false
@@ -559,7 +555,7 @@ impl<'s> Checker<'_, 's> {
             }
             return;
         }
-        // An instance is no value.
+        // An instance is not a value.
         if is_written && self.decl.program.instance_in(place.ty, &|it| self.decl.is_instance(it)).is_none() {
             found.push(Assigned { place, default: default.clone(), value: value.clone() });
         }

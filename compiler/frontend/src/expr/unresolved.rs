@@ -19,7 +19,7 @@ pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
     let own = BLOCKS.iter().filter(|it| it.family == family && it.facts.option.is_none());
     let names: Vec<_> = own.map(|it| it.name).filter(|it| !it.starts_with("__")).collect();
     let owner = family.name();
-    let error = Diagnostic::new(Code::E0309, name.span, format!("{owner} documents no `{}`", name.text))
+    let error = Diagnostic::new(Code::E0309, name.span, format!("{owner} does not document `{}`", name.text))
         .label(format!("not a block of {owner}"));
     match nearest(name.text, names.iter().copied()).filter(|near| near.len() == name.text.len()) {
         Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
@@ -32,12 +32,12 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: a
     let blocks: Vec<_> = BLOCKS.iter().filter(|it| it.is_named(name.text)).collect();
     let owners: Vec<_> = blocks.iter().map(|it| it.family).collect();
     let instruction = blocks.first()?.instructions[0].name;
-    let without = format!("{} documents no `{}`", dialect.family().name(), name.text);
+    let without = format!("{} does not document `{}`", dialect.family().name(), name.text);
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
     let others = dialects_of(&owners);
     let error = Diagnostic::new(Code::E0309, name.span, without)
-        .label(format!("under `--dialect {}` this name has no block", dialect.name()))
+        .label(format!("no block has this name under `--dialect {}`", dialect.name()))
         .note(format!("the dialect {} has it", list(&others)));
     // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
     Some(match (others.as_slice(), owners.as_slice()) {
@@ -109,17 +109,17 @@ fn dialects_of(families: &[Family]) -> Vec<&'static str> {
     Dialect::ALL.iter().filter(owns).map(|it| it.name()).collect()
 }
 
-/// Values that are no names, for suggestions.
+/// Values that are not names, for suggestions.
 const CONSTANTS: [&str; 2] = ["TRUE", "FALSE"];
 
 /// Words that do something in other languages, or in other places.
 const FOREIGN: [(&str, &str); 13] = [
-    ("DEFAULT", "the branch of a CASE for all other values is written `ELSE`"),
-    ("OTHERS", "the branch of a CASE for all other values is written `ELSE`"),
-    ("OTHERWISE", "the branch of a CASE for all other values is written `ELSE`"),
+    ("DEFAULT", "the CASE branch for all other values is written `ELSE`"),
+    ("OTHERS", "the CASE branch for all other values is written `ELSE`"),
+    ("OTHERWISE", "the CASE branch for all other values is written `ELSE`"),
     ("BREAK", "a loop is left with `EXIT;`, and a branch of a CASE ends before the next label"),
-    ("PASS", "nothing to do is written `;`"),
-    ("NOP", "nothing to do is written `;`"),
+    ("PASS", "the empty statement is written `;`"),
+    ("NOP", "the empty statement is written `;`"),
     ("STOP", "a POU is left with `RETURN;`"),
     ("HIGH", "write `TRUE`"),
     ("LOW", "write `FALSE`"),
@@ -275,7 +275,7 @@ impl<'s> Checker<'_, 's> {
         self.report(error);
     }
 
-    /// Where a variable of the POU has the name, behind the initial value that names it.
+    /// Where a variable of the POU has the name, after the initial value that names it.
     fn declared_later(&self, name: ast::Name<'s>) -> Option<Span> {
         let is_before = |it: Span| it.file == name.span.file && it.start < name.span.start;
         let around = self.decl.pous.iter().filter(|it| is_before(it.ast.name.span));

@@ -57,7 +57,7 @@ pub(crate) fn lost_count(span: Span) -> Diagnostic {
 
 pub(crate) fn assigned_count(span: Span, counter: Span) -> Diagnostic {
     Diagnostic::new(Code::E0315, span, "the variable that keeps a counter's count is assigned")
-        .label("only the counter writes it")
+        .label("only the counter may write it")
         .other(counter, "given as RCV here")
         .help("to clear the count, call the counter with its RESET TRUE")
 }

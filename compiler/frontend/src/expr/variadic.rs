@@ -37,7 +37,7 @@ impl<'s> Checker<'_, 's> {
         self.operand(&tree, expected)
     }
 
-    /// Operands that are not written in the order of their parameters, `SUB(IN2 := b, IN1 := a)`, or beside the target of
+    /// Operands that are not written in the order of their parameters, `SUB(IN2 := b, IN1 := a)`, or with the target of
     /// an ENO.
     fn folded(
         &mut self,

@@ -1,4 +1,4 @@
-//! Variables that are some bits of another one: what lies at a direct address that others share, BITs, and the
+//! Variables that are some bits of another one: those at a direct address that others share, BITs, and the
 //! members of a UNION. Reading and assigning them.
 
 use super::checker::Checker;
@@ -26,16 +26,16 @@ impl<'s> Checker<'_, 's> {
         let with = match view.address {
             _ if view.is_packed => {
                 return self.report(
-                    Diagnostic::new(Code::E0410, span, format!("`{text}` is packed, and no variable of its own"))
-                        .label("it can be read and assigned, and be given to inputs and outputs")
-                        .help("use a variable of its own here, and assign that"),
+                    Diagnostic::new(Code::E0410, span, format!("`{text}` is packed, so it is not a separate variable"))
+                        .label("it can be read, assigned, and passed to inputs and outputs")
+                        .help("use a separate variable here, and assign it"),
                 );
             }
             _ if view.is_selected => {
                 return self.report(
-                    Diagnostic::new(Code::E0306, span, format!("`{text}` is no variable of its own"))
-                        .label("some bits of one: they can be read and assigned, and be given to inputs and outputs")
-                        .help("use a variable of its own here, and assign that"),
+                    Diagnostic::new(Code::E0306, span, format!("`{text}` is not a separate variable"))
+                        .label("bits of a variable can be read, assigned, and passed to inputs and outputs")
+                        .help("use a separate variable here, and assign it"),
                 );
             }
             Some(_) => "another address",
@@ -43,8 +43,8 @@ impl<'s> Checker<'_, 's> {
         };
         self.report(
             Diagnostic::new(Code::E0410, span, format!("`{text}` shares its bits with {with}"))
-                .label("it can be read and assigned, and be given to inputs and outputs")
-                .help("use a variable of its own here, and assign that"),
+                .label("it can be read, assigned, and passed to inputs and outputs")
+                .help("use a separate variable here, and assign it"),
         );
     }
 

@@ -1,5 +1,5 @@
 //! The classes of a program as they are written, what the names after EXTENDS mean, and which METHODs have the same
-//! parameters: as far as syntax and names tell, before types are known.
+//! parameters: as far as syntax and names show, before types are known.
 
 use crate::ast::{
     BinaryOp, Bound, Expr, ExprKind, File, InitialKind, Item, Literal, LiteralValue, Name, Path, Pou, PouKind,
@@ -171,7 +171,7 @@ impl<'s> Classes<'s> {
         }
     }
 
-    /// Whether METHODs of one name may differ in their parameters.
+    /// Whether METHODs with the same name may differ in their parameters.
     pub fn may_be_overloaded(&self, routine: &Pou<'s>) -> bool {
         routine.kind == PouKind::Method && self.dialect(routine.name.span).has_overloads()
     }

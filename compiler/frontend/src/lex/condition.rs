@@ -109,7 +109,7 @@ pub fn condition(text: &str) -> Option<Condition<'_>> {
 
 /// No condition of a program has more bytes.
 const LONGEST: usize = 4096;
-/// Parentheses that are nested deeper are no condition of a program.
+/// No real condition has parentheses that are nested deeper.
 const DEEPEST: usize = 50;
 
 fn disjunction(text: &str, depth: usize) -> Option<(Condition<'_>, &str)> {

@@ -119,11 +119,11 @@ pub fn choose<'s>(tokens: &mut Tokens<'s>, by_project: &'s [String], known: Know
 }
 
 fn without_if(pragma: &Name<'_>) -> Diagnostic {
-    let message = format!("`{{{}}}` belongs to nothing: there is no open `{{IF}}` here", pragma.text.trim());
+    let message = format!("`{{{}}}` has no open `{{IF}}` before it", pragma.text.trim());
     Diagnostic::new(Code::E0015, pragma.span, message).label("nothing to close or continue")
 }
 
-/// Drops what lies in the ranges, which are in order.
+/// Drops the tokens in the ranges, which are in order.
 fn leave_out(tokens: &mut Tokens<'_>, ranges: &[(u32, u32)]) {
     let is_out = |at: u32| {
         let before = ranges.partition_point(|it| it.0 <= at);

@@ -190,7 +190,7 @@ kinds! {
         WideText "a string"
         #[regex(r"'([^'$\r\n]|\$[^\r\n])*")]
         #[regex(r#""([^"$\r\n]|\$[^\r\n])*"#)]
-        OpenText "a string without its end"
+        OpenText "a string that is not closed"
         #[regex(r"%[IQMiqm][A-Za-z]?(\*|[0-9]+(\.[0-9A-Za-z_]+)*)")]
         Address "an address"
         #[regex(r"%[XBWDLxbwdl][0-9]+")]
@@ -201,7 +201,7 @@ kinds! {
         Comment "a comment"
         #[token("{", super::comment::pragma)]
         Pragma "a pragma"
-        /// Characters that are no token; reported by the lexer.
+        /// Characters that do not form a token; reported by the lexer.
         Unknown "an unknown character"
         /// Stands once, after the last token.
         End "the end of the file"

@@ -67,10 +67,10 @@ fn fault(text: &str, first: usize, error: LiteralError) -> Fault {
     let wrong = &text[start..end];
     let message = match error.kind {
         Kind::Base => format!("{}, not {wrong}", error.kind.text()),
-        Kind::Digit { base } => format!("`{wrong}` is no digit of base {base}"),
-        Kind::UnknownUnit => format!("`{}` is no unit of time: expected d, h, m, s, ms, us or ns", unit(wrong)),
-        Kind::UnitOrder => format!("`{}` is after a shorter or the same unit", unit(wrong)),
-        Kind::InnerFraction { .. } => format!("{}, and `{}` is not the last", error.kind.text(), unit(wrong)),
+        Kind::Digit { base } => format!("`{wrong}` is not a digit of base {base}"),
+        Kind::UnknownUnit => format!("`{}` is not a unit of time: expected d, h, m, s, ms, us or ns", unit(wrong)),
+        Kind::UnitOrder => format!("`{}` comes after a shorter unit or the same unit", unit(wrong)),
+        Kind::InnerFraction { .. } => format!("{}, but `{}` is not the last", error.kind.text(), unit(wrong)),
         Kind::Day { last } => format!("{}: it has {last} days", error.kind.text()),
         Kind::NoDigits
         | Kind::UnderscoreInNumber
@@ -184,7 +184,7 @@ pub fn string(text: &str, is_wide: bool) -> (Chars, Vec<Fault>) {
             Some(length) => at += length,
             None => {
                 let length = 1 + inner[at + 1..].chars().next().map_or(0, char::len_utf8);
-                let message = format!("`{}` is no escape", &inner[at..at + length]);
+                let message = format!("`{}` is not an escape", &inner[at..at + length]);
                 faults.push(Fault::new(1 + at, 1 + at + length, message));
                 at += length;
             }

@@ -35,10 +35,10 @@ pub(crate) fn report(decl: &mut Declarations<'_>) {
             Diagnostic::new(
                 Code::W0527,
                 name.span,
-                format!("CODESYS calls `{}` {place}; nothing calls it here", name.text),
+                format!("CODESYS calls `{}` implicitly {place}; Staunch does not", name.text),
             )
             .label(format!("{instead}, whatever this returns"))
-            .help("write what it guards against where it may happen: `IF divisor <> 0 THEN …`"),
+            .help("write the check where it is needed: `IF divisor <> 0 THEN …`"),
         );
     }
 }

@@ -19,8 +19,8 @@ pub(crate) fn report(decl: &mut Declarations<'_>) {
         let Some(what) = standard(decl.dialect(name.span), pou.ast.kind, name.text) else { continue };
         decl.report(
             Diagnostic::new(Code::W0517, name.span, format!("`{}` is also {what}", name.text))
-                .label("in this program the name means this")
-                .help("give it another name, unless it stands in for that"),
+                .label("in this program the name means this declaration")
+                .help("give it another name, unless it is meant to replace that one"),
         );
     }
 }
@@ -34,6 +34,6 @@ fn standard(dialect: Dialect, kind: PouKind, name: &str) -> Option<&'static str>
         Some("a standard function block")
     } else {
         let unit = prelude::unit(name, dialect).filter(|it| it.is_function() == is_function);
-        unit.map(|_| "in the library that Staunch brings along")
+        unit.map(|_| "in the library that is bundled with Staunch")
     }
 }

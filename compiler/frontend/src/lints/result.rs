@@ -5,7 +5,7 @@ use crate::start::INITIAL;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, ast};
 
-/// The FUNCTIONs whose bodies do not name their result. What was refused may have assigned it.
+/// The FUNCTIONs whose bodies do not name their result. A refused statement may have assigned it.
 pub(crate) fn unassigned(decl: &Declarations<'_>) -> Vec<Diagnostic> {
     let unassigned = (0..decl.pous.len())
         .filter(|slot| !decl.is_head(*slot) && decl.pous[*slot].dispatch.is_none())

@@ -37,7 +37,7 @@ fn of_pou(decl: &mut Declarations<'_>, slot: usize, used: &FxHashSet<Span>) {
         {
             decl.report(
                 Diagnostic::new(Code::W0501, variable.name.span, format!("`{}` is never used", variable.name.text))
-                    .label("declared here, read and written nowhere"),
+                    .label("declared here, but never read or written"),
             );
         }
     }

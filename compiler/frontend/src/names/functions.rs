@@ -82,7 +82,7 @@ pub(crate) enum DateFunction {
     Weekday,
 }
 
-/// Functions that are no rows of the runtime's tables, and other vendors' names of parameters.
+/// Functions that are not rows of the runtime's tables, and other vendors' names of parameters.
 const OTHERS: &[(Option<Dialect>, Signature, Meaning)] = &[
     (None, signature!("MUX" (K: ANY_INT, IN0: T, IN1: T) -> T [ANY] extensible), Meaning::Mux),
     (None, signature!("MOVE" (IN: T) -> T [ANY]), Meaning::Move),
@@ -287,7 +287,7 @@ pub(crate) fn typed(name: &str) -> Option<(&'static Signature, Meaning, Elementa
     Some((signature, *meaning, ty))
 }
 
-/// A dialect that has a function of this name, which not all have.
+/// A dialect that has a function with this name, if not all dialects have it.
 pub(crate) fn owner(name: &str) -> Option<Dialect> {
     named(name).iter().find_map(|it| it.0).or_else(|| conversion(name)?.owner())
 }
@@ -391,7 +391,7 @@ impl Converted {
 
 /// What the name of a conversion function says.
 pub(crate) fn conversion(name: &str) -> Option<Conversion> {
-    // Most names have no underline, and this is asked of each that is called.
+    // Most names have no underscore, and this is asked of each that is called.
     if !name.contains('_') {
         return None;
     }

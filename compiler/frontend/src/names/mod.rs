@@ -44,7 +44,7 @@ pub(crate) enum Sense {
     /// A variable, or else what may be misused as one.
     Value,
     Callee,
-    /// A callee that is no variable.
+    /// A callee that is not a variable.
     Function,
 }
 
@@ -294,7 +294,7 @@ impl<'s> Names<'s> {
         }
     }
 
-    /// What a library has. What is bundled in Structured Text is declared as what users write is.
+    /// What a library has. Bundled Structured Text is declared like a user's sources.
     fn of_library(&self, dialect: Dialect, of: &str, name: &str, sense: Sense) -> Option<Meaning> {
         if prelude::unit(name, dialect).is_some_and(|it| library::is_one_of(it.libraries, of)) {
             // A unit whose name the program has itself has another one.
@@ -317,7 +317,7 @@ impl<'s> Names<'s> {
             && self.is_of_library(space)
         {
             let found = self.in_space(site, space, between, last, sense);
-            // What is bundled of a library is there beside its sources.
+            // The bundled part of a library is available in addition to its sources.
             let bundled = || self.of_library(site.dialect, first, last, sense).filter(|_| between.is_empty());
             let is_one = found != Found::Nothing;
             return if is_one { found } else { bundled().map_or(Found::Nothing, Found::One) };
@@ -437,7 +437,7 @@ impl<'s> Names<'s> {
         held.or_else(standard).map_or(Found::Nothing, Found::One)
     }
 
-    /// The only enumeration in a namespace that has a value of this name, which needs none before it.
+    /// The only enumeration in a namespace that has a value with this name, so that the name needs no prefix.
     fn enumerator_in(&self, site: Site, space: SpaceId, name: &str) -> Option<Meaning> {
         let slots = self.enumerators.get(&Key(name))?;
         let own = self.spaces[space.0].own.values();
@@ -467,7 +467,7 @@ impl<'s> Names<'s> {
         self.spaces[space.0].internal == Some(true)
     }
 
-    /// `Globals.x`; in `siemens`, whose quotes around a name say that it is no local one, `Globals.f(…)` too.
+    /// `Globals.x`; in `siemens`, whose quotes around a name say that it is not a local one, `Globals.f(…)` too.
     fn global(&self, site: Site, name: &str, sense: Sense) -> Found {
         let is_called = sense == Sense::Callee && site.dialect == Dialect::Siemens;
         match self.bare(site, name, Sense::Value) {
@@ -544,7 +544,7 @@ impl<'s> Names<'s> {
         own.into_iter().map(|it| it.1).collect()
     }
 
-    /// What a USING directive in a region names; false where there is no such namespace, or it is not seen.
+    /// What a USING directive in a region names; false if the namespace does not exist or is not visible.
     pub fn use_space(&mut self, region: RegionId, site: Site, path: &[ast::Name<'_>]) -> bool {
         let space = self.space_at(site, path).filter(|it| self.hidden(site, *it).is_none());
         space.into_iter().for_each(|it| self.regions.use_in(region, it));
@@ -650,7 +650,7 @@ impl<'s> Names<'s> {
         self.spaces[space.0].own.get(&Key(name)).copied()
     }
 
-    /// The namespace of that name in another one.
+    /// The namespace with this name in another one.
     pub fn inner_named(&self, space: SpaceId, name: &str) -> bool {
         self.spaces[space.0].inner.contains_key(&Key(name))
     }
@@ -670,7 +670,7 @@ impl<'s> Names<'s> {
         self.spaces.iter().find(holds).map(|it| it.name.as_str())
     }
 
-    /// The global variables of that name in the lists of the root, or of a library, whose names are used by themselves.
+    /// The global variables with this name in the lists of the root, or of a library, whose names need no prefix.
     pub fn in_lists(&self, around: SpaceId, name: &str) -> Vec<Entry> {
         self.listed_in(around, name).into_iter().map(|it| it.1).collect()
     }
@@ -723,7 +723,7 @@ impl<'s> Names<'s> {
         self.spaces.iter().flat_map(|it| it.own.keys()).map(|it| it.0)
     }
 
-    /// In full, the namespaces that hold a type or a POU of that name, and whether it is INTERNAL.
+    /// The full names of the namespaces that hold a type or a POU with this name, and whether it is INTERNAL.
     pub fn holders(&self, name: &str) -> Vec<(String, bool)> {
         let held = |it: &Namespace<'_>| {
             let entries = it.own.get(&Key(name)).filter(|it| it.ty.is_some())?;

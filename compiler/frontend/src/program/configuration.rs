@@ -130,7 +130,7 @@ impl<'s> Declarations<'s> {
         if let [first, second, ..] = alone.into_iter().chain(tasks).collect::<Vec<_>>().as_slice() {
             self.report(
                 Diagnostic::new(Code::E0902, second.name.span, "a second CONFIGURATION is not supported yet")
-                    .label("a program has one, with one or more RESOURCEs")
+                    .label("a program can have one, with one or more RESOURCEs")
                     .other(first.name.span, "the first one"),
             );
         }
@@ -153,7 +153,7 @@ impl<'s> Declarations<'s> {
         self.check_unbound(bindings);
     }
 
-    /// Reports what a VAR_CONFIG binds that is no variable of an instance, and an output of two variables.
+    /// Reports a binding of a VAR_CONFIG that is not to a variable of an instance, and an output of two variables.
     fn check_bindings(&mut self, configurations: &[&'s ast::Configuration<'s>], bindings: &[&'s ast::Binding<'s>]) {
         let mut written: FxHashMap<Key<'s>, Span> = FxHashMap::default();
         let mut bound: FxHashMap<Key<'s>, Span> = FxHashMap::default();
@@ -175,17 +175,17 @@ impl<'s> Declarations<'s> {
                 }
                 if let Some(first) = bound.insert(Key(self.log.sources.text(target.span)), target.span) {
                     self.report(
-                        Diagnostic::new(Code::E0409, target.span, "a variable is in a VAR_CONFIG once")
+                        Diagnostic::new(Code::E0409, target.span, "this variable appears twice in VAR_CONFIG")
                             .label("bound again here")
                             .other(first, "first bound here")
-                            .help("an address and a value go together: `run.x AT %MW0 : INT := 5;`"),
+                            .help("write address and value together: `run.x AT %MW0 : INT := 5;`"),
                     );
                 }
             } else {
                 let instances: Vec<_> = instances.iter().map(|it| it.1.name.text).collect();
                 let from = if default.is_empty() { "an instance of the CONFIGURATION" } else { "a PROGRAM" };
-                let error = Diagnostic::new(Code::E0101, target.span, "this is no variable of an instance")
-                    .label(format!("a path from {from} is expected"));
+                let error = Diagnostic::new(Code::E0101, target.span, "this is not a variable of an instance")
+                    .label(format!("expected a path that starts with {from}"));
                 self.report(match instances.first() {
                     Some(_) => error.help(format!("there is {}", crate::diagnostic::wording::list(&instances))),
                     None => error.help("run a PROGRAM in it: `PROGRAM run : Main;`"),
@@ -203,7 +203,7 @@ impl<'s> Declarations<'s> {
                         address.span,
                         format!("two variables are bound to `{}`", address.text),
                     )
-                    .label("which of them is written there is not known")
+                    .label("it is not known which of them is written there")
                     .other(first, "the other one")
                     .help("bind one of them, and read it where the other is needed"),
                 );
@@ -231,15 +231,17 @@ impl<'s> Declarations<'s> {
             () if has_in_outs(self.pous[slot].ast) => {
                 "a VAR_CONFIG does not reach into a called PROGRAM with a VAR_IN_OUT yet"
             }
-            () if !has_run => "a CONFIGURATION lists PROGRAMs, and not this one",
-            () if !runs => "what a VAR_CONFIG binds is copied before and after its body, which nothing calls",
+            () if !has_run => "a CONFIGURATION lists PROGRAMs, but not this one",
+            () if !runs => "bound variables are copied before and after its body, which is never called",
             () => return false,
         };
         self.report(
             Diagnostic::new(Code::E0902, target.span, format!("`{}` is called by name", run.name.text))
                 .label(label)
                 .other(first, "named here")
-                .help("give the variable its address or value where it is declared, or let the PROGRAM run by itself"),
+                .help(
+                    "give the variable its address or value where it is declared, or do not call the PROGRAM by name",
+                ),
         );
         true
     }
@@ -250,7 +252,7 @@ impl<'s> Declarations<'s> {
             let (name, ty) = (self.log.sources.text(target.span), self.log.sources.text(located.ty.span));
             let help = format!("write `{name} AT %…0 : {ty};`, or `{name} : {ty} := …;`");
             self.report(
-                Diagnostic::new(Code::E0409, target.span, "a VAR_CONFIG gives an address or an initial value")
+                Diagnostic::new(Code::E0409, target.span, "expected an address or an initial value")
                     .label("this has neither")
                     .help(help),
             );
@@ -269,12 +271,12 @@ impl<'s> Declarations<'s> {
         let area = |it: ast::Name<'s>| it.text.get(1..2).map(str::to_ascii_uppercase);
         let error = if decl.is_some_and(|it| it.known_address().is_some()) {
             Diagnostic::new(Code::E0409, target.span, format!("this variable is at `{}`", declared.text))
-                .label("a VAR_CONFIG gives an address to what is at `%I*`, `%Q*` or `%M*`")
+                .label("VAR_CONFIG can only complete `%I*`, `%Q*` or `%M*`")
         } else if area(declared) == area(address) {
             return true;
         } else {
             Diagnostic::new(Code::E0409, address.span, format!("this variable is declared at `{}`", declared.text))
-                .label("an address of another area")
+                .label("this address is in another area")
         };
         self.report(error.other(declared.span, "declared here"));
         false
@@ -307,7 +309,7 @@ impl<'s> Declarations<'s> {
                     .label("a task calls it again here")
                     .other(first, "first called here")
                     .help(format!(
-                        "let each of the tasks call a PROGRAM of its own, whose body is `{0}();`: there is one `{0}`, which both then call",
+                        "give each task its own PROGRAM with the body `{0}();`: both then call the one `{0}`",
                         name.text
                     )),
             );
@@ -339,9 +341,9 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(
                 Code::E0303,
                 first.span,
-                format!("nothing gives the PROGRAM `{name}` a variable for `{}`", first.text),
+                format!("the PROGRAM `{name}` gets no variable for `{}`", first.text),
             )
-            .label("a VAR_IN_OUT is connected with a global variable where the PROGRAM is run")
+            .label("a VAR_IN_OUT of a PROGRAM must be connected to a global variable")
             .help(format!(
                 "connect it in a CONFIGURATION: `PROGRAM run WITH task : {name}({});`",
                 connected.join(", ")
@@ -361,9 +363,9 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(
                     Code::E0403,
                     span,
-                    format!("the PROGRAM `{}` has VAR_GLOBAL, and runs once", pou.name.text),
+                    format!("the PROGRAM `{}` has VAR_GLOBAL, so it can run only once", pou.name.text),
                 )
-                .label("a second run of it")
+                .label("this runs it a second time")
                 .other(other, "the first one")
                 .help(format!("move its {} to the file, or declare it in VAR", self.log.sources.text(globals.span))),
             );
@@ -505,7 +507,7 @@ impl<'s> Declarations<'s> {
                 }
                 // Its run takes a TIME, and says so.
                 ("INTERVAL", Some(_)) if is_single && !is_time => {}
-                // What is no constant has been reported.
+                // A value that is not a constant has been reported.
                 ("INTERVAL", None) => {}
                 ("INTERVAL", Some(_)) => self.report(
                     Diagnostic::new(Code::E0201, expr.span, "INTERVAL is a TIME above zero").help("write `T#10ms`"),
@@ -536,8 +538,8 @@ impl<'s> Declarations<'s> {
                 continue;
             }
             self.report(
-                Diagnostic::new(Code::E0902, span, format!("reading `{}`, a PROGRAM that nobody calls", name.text))
-                    .label("no run of it belongs to what is read")
+                Diagnostic::new(Code::E0902, span, format!("reading `{}`, a PROGRAM that is never called", name.text))
+                    .label("it has no instance to read from")
                     .other(name.span, "declared here")
                     .help(format!("call it: `{}();`", name.text)),
             );
@@ -548,14 +550,14 @@ impl<'s> Declarations<'s> {
     pub fn report_called_and_listed(&mut self, slot: usize, listed: Span) -> bool {
         let Some(named) = self.named_programs.get(&slot) else { return false };
         let (name, first) = (named.variable.name.text, named.first);
-        let message = format!("`{name}` is named, and runs with an instance of its own");
+        let message = format!("`{name}` is used by name, but also runs with its own instance");
         // Each of its runs says the same.
         if self.log.diagnostics.iter().all(|it| it.message != message) {
             self.report(
                 Diagnostic::new(Code::E0902, listed, message)
-                    .label("one of several runs, or one with connections, a SINGLE or a VAR_CONFIG")
-                    .other(first, "this means the one instance of the PROGRAM")
-                    .help("list it once and connect nothing, or name it nowhere"),
+                    .label("this is one of several instances, or it has connections, a SINGLE or a VAR_CONFIG")
+                    .other(first, "the name means the only instance of the PROGRAM")
+                    .help("list it once without connections, or do not use its name"),
             );
         }
         true

@@ -19,15 +19,19 @@ impl Declarations<'_> {
         let routine = self.program.routine(escape.routine);
         let target = routine.locals[escape.target.index()].name.clone();
         let label = match escape.how {
-            How::Stored => "this is still there when the call has ended".to_owned(),
-            How::Returned => "the caller gets it when the call has ended".to_owned(),
+            How::Stored => "this exists after the call has ended".to_owned(),
+            How::Returned => "the caller uses it after the call has ended".to_owned(),
             How::KeptBy(callee) => format!("`{}` keeps it", self.program.routine(callee).name),
         };
         let span = self.log.name_at(escape.at);
         self.report(
-            Diagnostic::new(Code::E0212, span, format!("a reference to `{target}` is kept, which lives for one call"))
-                .label(label)
-                .help(format!("declare `{target}` in VAR of a PROGRAM or FUNCTION_BLOCK, or in VAR_GLOBAL")),
+            Diagnostic::new(
+                Code::E0212,
+                span,
+                format!("a reference to `{target}` outlives it: `{target}` exists only during one call"),
+            )
+            .label(label)
+            .help(format!("declare `{target}` in VAR of a PROGRAM or FUNCTION_BLOCK, or in VAR_GLOBAL")),
         );
     }
 }

@@ -162,7 +162,7 @@ impl<'s> Marked<'s> {
         }
     }
 
-    /// The initial value with the paths in it of what lies at `path`, if there are any.
+    /// The initial value of the variable at `path`, with the paths in it, if it has any.
     fn within(&self, ty: Type, value: &Const, path: &str) -> Option<Const> {
         match ty {
             Type::Struct(id) if self.holders.contains(&id) => Some(self.members(id, value, path)),

@@ -125,7 +125,7 @@ impl Declarations<'_> {
         let signature = self.signature(inner)?;
         let arguments = arguments_of(&self.program.routines[slot].body, RoutineId::next(inner)).unwrap_or_default();
         let mut variables = variables(&self.image, &signature);
-        // A VAR_TEMP is there while the PROGRAM itself runs.
+        // A VAR_TEMP exists only while the PROGRAM itself runs.
         variables.retain(|it| !matches!(it.place.root, Root::Local(_)));
         for Place { root, projections, .. } in variables.iter_mut().map(|it| &mut it.place) {
             match *root {
@@ -184,7 +184,7 @@ impl Declarations<'_> {
 }
 
 impl Declarations<'_> {
-    /// Whether references can tell all variables apart whose addresses are taken.
+    /// Whether references can distinguish all variables whose addresses are taken.
     fn check_objects(&mut self, layout: &Layout) -> Option<()> {
         let most = (1 << (CLASS - 32)) - 1;
         let is_too_many = !self.program.references.is_empty() && objects(&self.program, layout).len() > most;

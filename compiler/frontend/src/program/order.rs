@@ -103,15 +103,15 @@ fn visit(start: usize, calls: &[Vec<usize>], marks: &mut [Mark], order: &mut Vec
 }
 
 fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
-    // What chooses by a class is not written: the calls go on in it.
+    // A routine that chooses by class is not in the source: the chain of calls continues in it.
     let slots = cycle.iter().map(|at| slot(declarations, *at));
     let slots: Vec<_> = slots.filter(|it| declarations.pous[*it].dispatch.is_none()).collect();
     let first = declarations.pous[slots[0]].ast.name;
     let way: Vec<_> = slots.iter().chain(&slots[..1]).map(|it| declarations.title(*it)).collect();
     declarations.report(
         Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", way[0]))
-            .label("recursion has no bound on its stack")
-            .note(format!("the calls go {}", way.join(" -> ")))
+            .label("recursion has no limit on its stack")
+            .note(format!("the chain of calls is {}", way.join(" -> ")))
             .help("write it as a loop"),
     );
 }
@@ -137,8 +137,8 @@ fn check_stack(declarations: &mut Declarations<'_>, mut stacks: Vec<u64>, calls:
                     name.span,
                     format!("a call of `{}` takes {own} bytes of the stack", name.text),
                 )
-                .label("for its temporary variables and the strings that it makes; with the calls it makes, it may take 1 MiB")
-                .help("move large arrays to VAR of a FUNCTION_BLOCK or PROGRAM, or to VAR_GLOBAL; take expressions of long strings apart"),
+                .label("for temporary variables and strings; at most 1 MiB is allowed, including the calls that it makes")
+                .help("move large arrays to VAR of a FUNCTION_BLOCK or PROGRAM, or to VAR_GLOBAL; split expressions of long strings"),
             );
         }
     }

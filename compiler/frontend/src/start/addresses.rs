@@ -112,7 +112,7 @@ pub(crate) const ADDRESSED: [&str; 2] = ["__stat_addressed", "__inst_addressed"]
 fn once<'s>(pou: &mut Pou<'s>, kind: VarKind, types: &Types<'s>) -> Vec<Statement<'s>> {
     let found = taken(pou.blocks.iter_mut().filter(|it| it.kind == kind), types, None, Owner::Other);
     let Some(first) = found.first() else { return Vec::new() };
-    // No name of the source is there, and what inherits the block has the same mark.
+    // The source has no name here, and a POU that inherits the block has the same mark.
     let at = pou.blocks.iter().find(|it| it.kind == kind).map_or(first, |it| it.span);
     let flag = ADDRESSED[usize::from(kind == VarKind::Inst)];
     pou.blocks.push(VarBlock { kind, ..variables(&[(flag, &["BOOL"])], at) });
@@ -156,7 +156,7 @@ pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, types: &Types<'s>) -> Option
 
 /// Takes out of a POU with a state the addresses that its start assigns.
 pub(super) fn of_state<'s>(pou: &mut Pou<'s>, types: &Types<'s>) -> Addresses<'s> {
-    // A PROGRAM has one set of variables, so they are all alike.
+    // A PROGRAM has one set of variables, so all its calls share them.
     let is_lasting = matches!(pou.kind, PouKind::Program | PouKind::Test);
     let is_state = |it: &&mut VarBlock<'s>| {
         matches!(it.kind, VarKind::Var | VarKind::Input | VarKind::Output) || is_lasting && it.kind == VarKind::Stat

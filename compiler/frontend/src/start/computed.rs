@@ -36,7 +36,7 @@ impl<'s> Owner<'s> {
     }
 }
 
-/// What initial values name, as far as syntax tells.
+/// What initial values name, as far as syntax shows.
 #[derive(Default)]
 pub(super) struct Computed<'s> {
     functions: FxHashSet<Key<'s>>,
@@ -146,7 +146,7 @@ impl<'s> Computed<'s> {
     fn when_of(&self, initial: &Initial<'s>, pou: Option<Key<'s>>) -> Option<When> {
         match &initial.kind {
             InitialKind::Value(value) => self.when(value, pou),
-            // An address is no value that anything is computed from before the start.
+            // Nothing is computed from an address before the start.
             InitialKind::Bind(_) => None,
             InitialKind::Elements(elements) => {
                 let values = elements.iter().flat_map(|it: &Element<'_>| &it.values);

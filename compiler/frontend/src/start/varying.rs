@@ -1,11 +1,11 @@
-//! Which names are variables' as far as syntax tells: an initial value that asks for one is assigned at each call, since
-//! what the variable holds then is what it means.
+//! Which names are variables as far as syntax shows: an initial value that reads one is assigned at each call, since
+//! it means the variable's value at that time.
 
 use crate::ast::{Expr, ExprKind, File, Item, Pou, PouKind, VarBlock, VarKind, each_part};
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// What is there everywhere: global variables, and POUs whose calls give values.
+/// What is available everywhere: global variables, and POUs whose calls give values.
 #[derive(Default)]
 pub(super) struct Everywhere<'s> {
     variables: FxHashSet<Key<'s>>,

@@ -45,7 +45,7 @@ pub fn judge(input: &mut In<'_, '_, '_>, innermost: Option<Kind>) -> Verdict {
     }
 }
 
-/// How far ahead the readings are compared: further on, one block more or less tells nothing.
+/// How far ahead the readings are compared: further on, one block more or less shows nothing.
 const HORIZON: usize = 2000;
 
 /// How many of the innermost blocks take part.
@@ -115,7 +115,7 @@ pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     }
 }
 
-/// Keeps the first block whose end is in another column: if an end is missing, it is there.
+/// Keeps the first block whose end is in another column: if an end is missing, it is missing there.
 fn note_columns(input: &mut In<'_, '_, '_>, opened: Span, closed: Span) {
     let state = input.state();
     if state.misaligned.is_none()

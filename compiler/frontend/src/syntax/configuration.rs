@@ -199,7 +199,7 @@ fn element<'s>(input: &mut In<'_, '_, 's>, into: &mut Resource<'s>, end: Kind) -
     true
 }
 
-/// Reports what does not parse, and goes on after it.
+/// Reports what does not parse, and continues after it.
 fn recover(input: &mut In<'_, '_, '_>, problem: Problem, start: Span) {
     input.state().depth = 0;
     diagnostics::report(input, problem);

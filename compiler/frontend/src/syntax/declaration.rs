@@ -101,7 +101,7 @@ pub fn access<'t, 's: 't>() -> impl Rule<'t, 's, (Access, Span)> {
     choice(ACCESSES.map(|(text, access)| before_name(text).map(move |span| (access, span))))
 }
 
-/// `PUBLIC` and the like after `VAR`, where a variable of that name would be declared.
+/// `PUBLIC` and the like after `VAR`, where a variable with that name would be declared.
 fn section_access<'t, 's: 't>() -> impl Rule<'t, 's, (Access, Span)> {
     let declares = |input: &mut In<'_, '_, '_>| matches!(input.kind_ahead(1), Kind::Colon | Kind::Comma | Kind::At);
     let alone = move |text| ahead(move |input| !declares(input)).ignore_then(word(text));
@@ -178,7 +178,7 @@ pub fn list<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<VarD
     vars
 }
 
-/// A declaration, or the names of one that does not parse: their uses are no further mistakes.
+/// A declaration, or the names of one that does not parse: their uses are not reported again.
 fn declaration_or_names<'t, 'p, 's>(input: &mut In<'t, 'p, 's>, start: Start<'t, 'p>) -> Option<VarDecl<'s>> {
     let from = input.here();
     let mut names = Vec::new();

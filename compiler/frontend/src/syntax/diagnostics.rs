@@ -18,7 +18,7 @@ use super::{
     token_class::{ends_statements, opens_statement},
 };
 
-/// The general sentence: what was expected, and what is there.
+/// The general sentence: what was expected, and what was found.
 pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
     let found = input.state().tokens.kinds.get(problem.at).copied().unwrap_or(Kind::End);
     // The lexer has spoken about those.
@@ -59,7 +59,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
         (Expected::Block, _) => {
             let it = Diagnostic::new(Code::E0001, span, format!("expected {}, found {shown}", said(problem.expected)))
-                .label("this belongs to no unit of the program");
+                .label("this is outside any unit of the program");
             let is_test =
                 ["TEST_PROGRAM", "TEST_FUNCTION_BLOCK"].iter().any(|it| it.eq_ignore_ascii_case(input.text(span)));
             if is_test { it.help("a unit test is written `TEST 'what it shows' … END_TEST`") } else { it }
@@ -95,7 +95,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
         (Expected::Other, _) => {
             let it = Diagnostic::new(Code::E0001, span, format!("{shown} cannot be here"));
-            it.label("nothing that begins so goes on with this")
+            it.label("this does not fit what comes before it")
         }
         (expected, _) => {
             let expected = said(expected);
@@ -194,7 +194,7 @@ fn bracket(end: Kind) -> &'static str {
     if end == Kind::CloseBracket { "]" } else { ")" }
 }
 
-/// `word` with spaces where it would touch what is beside `span`, which it replaces.
+/// `word` with spaces where it would touch the text next to `span`, which it replaces.
 pub fn padded(input: &mut In<'_, '_, '_>, span: Span, word: &str) -> String {
     let text = input.state().text;
     let before = text[..index(span.start)].chars().next_back();
@@ -313,15 +313,15 @@ pub fn behind_else(word: Span, kind: Kind) -> Diagnostic {
 
 pub fn stray(span: Span, kind: Kind) -> Diagnostic {
     let (what, help) = match kind {
-        Kind::Else => ("there is no open IF or CASE here".to_owned(), "delete it, or open the IF that it belongs to"),
-        Kind::Elsif => ("there is no open IF here".to_owned(), "delete it, or open the IF that it belongs to"),
-        Kind::Until => ("there is no open REPEAT here".to_owned(), "delete it, or write REPEAT before the loop"),
+        Kind::Else => ("no IF or CASE is open here".to_owned(), "delete it, or open the IF that it belongs to"),
+        Kind::Elsif => ("no IF is open here".to_owned(), "delete it, or open the IF that it belongs to"),
+        Kind::Until => ("no REPEAT is open here".to_owned(), "delete it, or write REPEAT before the loop"),
         kind => {
             let opener = kind.keyword().unwrap_or_default().trim_start_matches("END_");
-            (format!("there is no open {opener} here"), "delete it, or look for the block that ends too early")
+            (format!("no {opener} is open here"), "delete it, or look for the block that ends too early")
         }
     };
-    Diagnostic::new(Code::E0015, span, format!("{kind} belongs to nothing: {what}"))
+    Diagnostic::new(Code::E0015, span, format!("{kind} is misplaced: {what}"))
         .label("nothing to close or continue")
         .help(help)
 }
@@ -336,7 +336,7 @@ pub fn assign_for_colon(sign: Span) -> Diagnostic {
 /// `RETURN x;`
 pub fn return_value(span: Span, value: Span) -> Diagnostic {
     Diagnostic::new(Code::E0019, span, "RETURN takes no value")
-        .other(value, "this belongs into an assignment")
+        .other(value, "the value must be assigned first")
         .help("assign the result to the function's own name, then write `RETURN;`")
 }
 
@@ -348,34 +348,34 @@ pub fn too_many(limit: usize) -> String {
 pub fn declaration_behind_statements(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0017, span, "this declaration comes after statements")
         .label("all VAR blocks come before the first statement")
-        .help("move this block to the head of its PROGRAM, FUNCTION_BLOCK or FUNCTION")
+        .help("move this block to the top of its PROGRAM, FUNCTION_BLOCK or FUNCTION")
 }
 
 /// A METHOD in a FUNCTION.
 pub fn routine_of_no_class(span: Span, kind: PouKind, owner: PouKind) -> Diagnostic {
     let (word, owner) = (kind.word(), owner.word());
-    Diagnostic::new(Code::E0403, span, format!("{} has no {word}", article(owner)))
-        .label("only a PROGRAM and a FUNCTION_BLOCK have")
+    Diagnostic::new(Code::E0403, span, format!("{} cannot have {word}s", article(owner)))
+        .label("only a PROGRAM and a FUNCTION_BLOCK can")
         .help(format!("write it as a FUNCTION, or move the {word} into a FUNCTION_BLOCK"))
 }
 
 /// A METHOD after its FUNCTION_BLOCK.
 pub fn routine_outside(span: Span, kind: PouKind) -> Diagnostic {
     let word = kind.word();
-    Diagnostic::new(Code::E0403, span, format!("{} belongs to a FUNCTION_BLOCK or PROGRAM", article(word)))
-        .label("it is outside of one")
+    Diagnostic::new(Code::E0403, span, format!("{} must be inside a FUNCTION_BLOCK or PROGRAM", article(word)))
+        .label("this one is outside")
         .help("move it before END_FUNCTION_BLOCK")
 }
 
 /// A PROPERTY with neither GET nor SET.
 pub fn property_without_accessors(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0403, span, "a PROPERTY has GET … END_GET, SET … END_SET, or both")
+    Diagnostic::new(Code::E0403, span, "a PROPERTY needs GET … END_GET, SET … END_SET, or both")
         .label("this has neither")
-        .help("write `GET … END_GET` after its head")
+        .help("write `GET … END_GET` after its declaration")
 }
 
 pub fn property_without_type(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0403, span, "a PROPERTY has a type")
+    Diagnostic::new(Code::E0403, span, "a PROPERTY needs a type")
         .label("this has none")
         .help("write it after the name: `PROPERTY level : INT`")
 }
@@ -383,23 +383,25 @@ pub fn property_without_type(span: Span) -> Diagnostic {
 /// A statement or a VAR_INPUT in a CLASS.
 pub fn not_in_a_class(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, format!("a CLASS has no {what}"))
-        .label("it has VAR, METHODs and PROPERTYs")
+        .label("only VAR, METHODs and PROPERTYs are allowed")
         .help("make it a FUNCTION_BLOCK, or move this into a METHOD")
 }
 
-/// A second base class, or one of what is no class.
+/// A second base class, or one of a unit that is not a class.
 pub fn too_many_bases(span: Span, kind: PouKind) -> Diagnostic {
     let message = if kind.is_block() {
-        format!("{} EXTENDS one other", article(kind.word()))
+        format!("{} can EXTEND only one other", article(kind.word()))
     } else {
-        format!("{} EXTENDS and IMPLEMENTS nothing", article(kind.word()))
+        format!("{} cannot have EXTENDS or IMPLEMENTS", article(kind.word()))
     };
-    Diagnostic::new(Code::E0403, span, message).label("one too many").help("delete it; INTERFACEs may be several")
+    Diagnostic::new(Code::E0403, span, message)
+        .label("this is one too many")
+        .help("delete it; only INTERFACEs may be several")
 }
 
 /// `INTERFACE a IMPLEMENTS b`
 pub fn interface_implements(span: Span, name: &str, base: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0403, span, "an INTERFACE EXTENDS others, and IMPLEMENTS none")
+    Diagnostic::new(Code::E0403, span, "an INTERFACE EXTENDS other INTERFACEs; it cannot IMPLEMENT them")
         .label("it has no bodies")
         .help(format!("write `INTERFACE {name} EXTENDS {base}`"))
 }
@@ -407,22 +409,22 @@ pub fn interface_implements(span: Span, name: &str, base: &str) -> Diagnostic {
 /// VAR in an ACTION.
 pub fn variables_of_action(span: Span) -> Diagnostic {
     Diagnostic::new(Code::E0403, span, "an ACTION has no variables of its own")
-        .label("it works with those of the POU that it belongs to")
+        .label("it uses those of its POU")
         .help("declare them in the POU, or make the ACTION a METHOD")
 }
 
 /// GSV and its like.
 pub fn controller_service(name: Span, text: &str, service: &str) -> Diagnostic {
     Diagnostic::new(Code::E0902, name, format!("`{}` is not supported: {service}", text.to_ascii_uppercase()))
-        .label("a service of the controller")
-        .help("give the program what it needs of it in tags")
+        .label("this is a service of the controller")
+        .help("pass the data that the program needs in tags")
 }
 
 /// VAR_CONFIG among the declarations of a POU.
 pub fn bindings_in_a_unit(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0403, span, "a VAR_CONFIG is not in a POU")
-        .label("it is in a CONFIGURATION, or in the file by itself")
-        .help("move it after the end of the POU, and name what it is about from its PROGRAM on: `Main.y AT %QX0.0 : BOOL;`")
+    Diagnostic::new(Code::E0403, span, "a VAR_CONFIG cannot be inside a POU")
+        .label("expected in a CONFIGURATION, or at the top level of the file")
+        .help("move it after the end of the POU, and start each path with the PROGRAM: `Main.y AT %QX0.0 : BOOL;`")
 }
 
 pub fn unsupported(span: Span, what: &str) -> Diagnostic {
@@ -460,7 +462,7 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
     if kind == Kind::Semicolon {
         input.report(
             Diagnostic::new(Code::E0001, here, "expected `,`, found `;`")
-                .label("the list goes on after this")
+                .label("the list continues after this")
                 .help("write `,`")
                 .fix(here, ","),
         );
@@ -476,7 +478,7 @@ pub fn missing_comma(input: &mut In<'_, '_, '_>) {
 
 /// `else:`
 pub fn colon_behind_else(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, "no `:` comes after the ELSE of an IF")
+    Diagnostic::new(Code::E0001, span, "the ELSE of an IF has no `:`")
         .label("delete this")
         .help("delete it")
         .fix(span, "")
@@ -487,7 +489,7 @@ pub fn name_alone(input: &mut In<'_, '_, '_>, span: Span) {
     let text = input.text(span);
     input.report(
         Diagnostic::new(Code::E0001, span, "expected `:=` or a call after this")
-            .label("this alone is no statement")
+            .label("this alone is not a statement")
             .help(format!("to assign, write `{text} := …;`; to call, `{text}(…);`")),
     );
 }
@@ -541,6 +543,6 @@ pub fn chosen_bit(span: Span, [integer, number]: [&str; 2]) -> Diagnostic {
     let bit = format!("DWORD_TO_DINT(SHL(DWORD#1, {number}))");
     Diagnostic::new(Code::E0902, span, format!("a bit whose number is an expression, `.[{number}]`, is not supported"))
         .label("a bit's number is written as digits, `.3`")
-        .note(format!("of a DINT it is set by `{integer} := {integer} OR {bit};`, reset by `{integer} := {integer} AND NOT {bit};`"))
+        .note(format!("a bit of a DINT is set by `{integer} := {integer} OR {bit};`, reset by `{integer} := {integer} AND NOT {bit};`"))
         .help(format!("write `({integer} AND {bit}) <> 0` for its value"))
 }

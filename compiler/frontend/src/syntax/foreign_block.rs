@@ -86,7 +86,7 @@ fn of_python(input: &mut In<'_, '_, '_>) -> bool {
         _ => "write `FOR i := 0 TO 9 DO … END_FOR`".to_owned(),
     };
     input.report(
-        Diagnostic::new(Code::E0020, head, "a word ends a block, and no indentation does")
+        Diagnostic::new(Code::E0020, head, "a block ends with a keyword, not by indentation")
             .label("this is written as in Python")
             .help(help),
     );
@@ -117,7 +117,7 @@ fn of_ada(input: &mut In<'_, '_, '_>) -> bool {
 fn refuse_loop(input: &mut In<'_, '_, '_>, span: Span, help: String) {
     input.report(
         Diagnostic::new(Code::E0020, span, "Structured Text has no LOOP and END LOOP")
-            .label("this is no statement here")
+            .label("this is not a statement here")
             .help(help),
     );
 }
@@ -200,8 +200,8 @@ fn exit_when(input: &mut In<'_, '_, '_>) -> bool {
     let whole = word.to(input.state().place(at + until));
     let meant = format!("IF {condition} THEN EXIT; END_IF");
     input.report(
-        Diagnostic::new(Code::E0020, whole, "EXIT has no condition of its own")
-            .label("expected an IF around it")
+        Diagnostic::new(Code::E0020, whole, "EXIT has no condition")
+            .label("put it into an IF")
             .help(format!("write `{meant}`"))
             .fix(whole, format!("{meant};")),
     );
@@ -322,7 +322,7 @@ fn each(input: &mut In<'_, '_, '_>) -> bool {
     true
 }
 
-/// Tokens up to after a block in braces after the line, or up to where `ends` says, if either is there.
+/// Tokens up to after a block in braces after the line, or up to where `ends` says, if either exists.
 fn block_to(
     input: &mut In<'_, '_, '_>,
     end: usize,

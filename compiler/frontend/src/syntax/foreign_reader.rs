@@ -16,7 +16,7 @@ use super::{
 pub const FURTHEST: usize = 2000;
 
 pub fn refuse(input: &mut In<'_, '_, '_>, span: Span, message: impl Into<String>, help: impl Into<String>) {
-    input.report(Diagnostic::new(Code::E0020, span, message).label("this is no statement here").help(help));
+    input.report(Diagnostic::new(Code::E0020, span, message).label("this is not a statement here").help(help));
 }
 
 /// How many tokens ahead the one after the parentheses is that open so many ahead.
@@ -36,7 +36,7 @@ pub fn behind_parentheses(input: &mut In<'_, '_, '_>, open: usize) -> usize {
     }
 }
 
-/// Whether braces with statements are directly before the token so many ahead; they are no pragma then.
+/// Whether braces with statements are directly before the token so many ahead; then they are not a pragma.
 pub fn has_braces(input: &mut In<'_, '_, '_>, ahead: usize) -> bool {
     let at = input.number() + ahead;
     let state = input.state();

@@ -45,13 +45,13 @@ fn two_names(input: &mut In<'_, '_, '_>) -> bool {
         return function(input);
     }
     let (message, help) = if is(&["SET"]) {
-        ("an assignment has no word before it", "write `x := …;`")
+        ("an assignment has no keyword before it", "write `x := …;`")
     } else if is(&["GOTO"]) {
-        ("Structured Text has no GOTO", "what it jumps over goes into an IF; what it goes back to into a WHILE")
+        ("Structured Text has no GOTO", "put statements to skip into an IF, and statements to repeat into a WHILE")
     } else if is(&["IMPORT", "USING", "INCLUDE"]) && !starts_line(input, 1) {
         (
-            "nothing is imported among statements",
-            "name other files with the program's own, or as `libraries` in `staunch.toml`",
+            "imports are not statements",
+            "list other files together with the program's own, or as `libraries` in `staunch.toml`",
         )
     } else {
         return false;
@@ -140,7 +140,7 @@ fn function(input: &mut In<'_, '_, '_>) -> bool {
     let name = input.state().place(at + 1);
     let name = input.text(name);
     let help = format!("write `FUNCTION {name} : INT VAR_INPUT … END_VAR … END_FUNCTION` before this unit or after it");
-    refuse(input, word, "a function is no statement, and has no braces", help);
+    refuse(input, word, "a function is not a statement, and has no braces", help);
     if input.kind_ahead(after) == Kind::Colon && skip_further_in(input, word, after + 1) {
         return true;
     }
@@ -186,7 +186,7 @@ fn doubled(input: &mut In<'_, '_, '_>) -> bool {
     }
     input.report(
         Diagnostic::new(Code::E0010, sign, "Structured Text has no `--`")
-            .label("a remark starts otherwise")
+            .label("`--` does not start a comment")
             .help("a comment is written `// …` or `(* … *)`"),
     );
     skip_line(input);
@@ -201,7 +201,7 @@ fn exit_by_name(input: &mut In<'_, '_, '_>) -> bool {
     input.take();
     let word = input.take();
     input.report(
-        Diagnostic::new(Code::E0020, word, "EXIT leaves the loop around it, and names none")
+        Diagnostic::new(Code::E0020, word, "EXIT leaves the innermost loop and takes no name")
             .label("delete this")
             .help("write `EXIT;`"),
     );

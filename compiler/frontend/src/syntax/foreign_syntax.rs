@@ -39,7 +39,7 @@ pub fn begin_or_end(input: &mut In<'_, '_, '_>) -> bool {
     if !matches!(input.kind(), Kind::Else | Kind::Elsif) {
         let _ = input.eat(Kind::Semicolon).or_else(|| input.eat(Kind::Dot));
         let end = input.state().open.last().map(|(end, _)| *end).filter(|it| body && !is_pou_end(*it));
-        // The body's own end may follow all the same.
+        // The body's own end may still follow.
         let kind = input.kind();
         input.state().instead = end.filter(|it| *it != kind);
     }
@@ -270,7 +270,7 @@ pub fn point_first(input: &mut In<'_, '_, '_>) -> bool {
     }
     let text = input.text(span);
     input.report(
-        Diagnostic::new(Code::E0005, span, "a number has a digit before its point")
+        Diagnostic::new(Code::E0005, span, "a number needs a digit before its decimal point")
             .help(format!("write `0{text}`"))
             .fix(span, format!("0{text}")),
     );
@@ -282,7 +282,7 @@ pub fn point_last(input: &mut In<'_, '_, '_>, number: Span) {
     let whole = number.to(input.last());
     let text = input.text(whole);
     input.report(
-        Diagnostic::new(Code::E0005, whole, "a number has a digit after its point")
+        Diagnostic::new(Code::E0005, whole, "a number needs a digit after its decimal point")
             .help(format!("write `{text}0`"))
             .fix(whole, format!("{text}0")),
     );
@@ -301,7 +301,7 @@ pub fn decimal_comma(input: &mut In<'_, '_, '_>) -> bool {
     let whole = last.to(after);
     let meant = input.text(whole).replace(',', ".");
     input.report(
-        Diagnostic::new(Code::E0005, whole, "a number's fraction comes after a point")
+        Diagnostic::new(Code::E0005, whole, "the decimal separator is a point")
             .help(format!("write `{meant}`"))
             .fix(whole, meant),
     );
@@ -350,8 +350,8 @@ pub fn extra_brackets(input: &mut In<'_, '_, '_>, follows: Kind) {
         let kind = input.kind();
         let span = input.take();
         input.report(
-            Diagnostic::new(Code::E0001, span, format!("this {kind} closes nothing"))
-                .label("there is no open bracket before it")
+            Diagnostic::new(Code::E0001, span, format!("this {kind} has no opening one"))
+                .label("no bracket is open here")
                 .help("delete it")
                 .fix(span, ""),
         );

@@ -54,7 +54,7 @@ pub fn bounds_in_parentheses<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     })
 }
 
-/// What is between a first bound and the next `,` or bracket, where it is no `..` and a last bound.
+/// What is between a first bound and the next `,` or bracket, if that is not `..` and a last bound.
 pub fn other_bound<'t, 's: 't>() -> impl Rule<'t, 's, Option<(Span, Expr<'s>)>> {
     let colon = token(Kind::Colon).then(expr()).map(Some);
     let ends = |kind| matches!(kind, Kind::Comma | Kind::CloseBracket | Kind::CloseParen);

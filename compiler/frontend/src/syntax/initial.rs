@@ -15,7 +15,7 @@ use super::{
     parser::{In, Parsed, TokenReader},
 };
 
-/// `:= value` or `REF= x`, if it is there.
+/// `:= value` or `REF= x`, if present.
 pub fn optional_initial<'t, 's: 't>() -> impl Rule<'t, 's, Option<Initial<'s>>> {
     let none = ahead(|input| !binds(input, 0) && !matches!(input.kind(), Kind::Assign | Kind::Equal)).to(None);
     let bound = ahead(|input| binds(input, 0)).ignore_then(binding()).map(Some);

@@ -1,5 +1,5 @@
 //! Names that cannot be names: reserved words, `my-name`, `2nd`. Each is reported where it is
-//! declared, and read as a name from there on, so that its uses are no further mistakes.
+//! declared, and read as a name from there on, so that its uses are not reported again.
 
 use std::collections::HashSet;
 

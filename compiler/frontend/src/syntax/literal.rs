@@ -80,7 +80,7 @@ fn lacks_unit(state: &State<'_, '_>, at: usize) -> bool {
         && lex::duration(state.slice(duration)).is_err()
 }
 
-/// `DT#2024-02-29 12:30:00`: how many tokens its time of day has that a space parts from it.
+/// `DT#2024-02-29 12:30:00`: how many tokens its time of day has after a space.
 fn clock_apart(state: &State<'_, '_>, at: usize) -> usize {
     let is_part = |it: &usize| matches!(state.tokens.kinds.get(*it), Some(Kind::Integer | Kind::Real | Kind::Colon));
     let count = (at + 1..).take_while(is_part).count();

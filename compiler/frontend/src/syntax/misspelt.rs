@@ -122,7 +122,7 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
 }
 
 /// `THNE` where a THEN is expected, and no assignment or call begins; `D0` for DO. Otherwise DO and OF are too
-/// short to tell.
+/// short to decide.
 pub fn is_misspelt_then(input: &mut In<'_, '_, '_>, word: Kind) -> bool {
     let begins = matches!(
         input.kind_ahead(1),

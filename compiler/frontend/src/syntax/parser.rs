@@ -1,4 +1,4 @@
-//! What productions are made of: the tokens, the state beside them, and the parser over them.
+//! What productions are made of: the tokens, the state next to them, and the parser over them.
 
 use chumsky::{
     DefaultExpected,
@@ -94,7 +94,7 @@ pub struct Waiting<'s> {
     pub sign: Span,
 }
 
-/// What is beside the tokens. Productions do not go back over what they reported, so
+/// The state next to the tokens. Productions do not go back over what they reported, so
 /// nothing in it is undone.
 #[derive(Debug)]
 pub struct State<'t, 's> {
@@ -118,7 +118,7 @@ pub struct State<'t, 's> {
     pub begins: Vec<(usize, bool)>,
     /// What opened the blocks whose body is in `{ … }`: they need no END_.
     pub braced: Vec<Span>,
-    /// Pairs of braces that are no pragmas, and have been reported.
+    /// Pairs of braces that are not pragmas and have been reported.
     pub braces: Vec<Span>,
     /// Declarations among the statements of the current POU, reported.
     pub strays: Vec<VarDecl<'s>>,

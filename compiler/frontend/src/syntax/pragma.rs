@@ -32,9 +32,9 @@ pub fn pack_here(input: &mut In<'_, '_, '_>) -> Option<(u64, Span)> {
     let mode = number.and_then(|it| it.trim().parse().ok()).filter(|it| [0, 1, 2, 4, 8].contains(it));
     if mode.is_none() {
         input.report(
-            Diagnostic::new(Code::W0514, pragma.span, "the attribute `pack_mode` is passed over")
+            Diagnostic::new(Code::W0514, pragma.span, "the attribute `pack_mode` is ignored")
                 .label("expected 0, 1, 2, 4 or 8")
-                .help("write `{attribute 'pack_mode' := '1'}` to have no bytes between members"),
+                .help("write `{attribute 'pack_mode' := '1'}` for no padding between members"),
         );
     }
     mode.map(|it: u64| (it.max(1), pragma.span))

@@ -1,4 +1,4 @@
-//! Where reading goes on after a mistake. Each list skips to its own next item, and never over a
+//! Where reading continues after a mistake. Each list skips to its own next item, and never over a
 //! keyword that an enclosing list waits for.
 
 use crate::{
@@ -365,7 +365,7 @@ fn missing_operator(input: &mut In<'_, '_, '_>, word: Kind, ahead: usize) {
     let (kind, here) = (input.kind(), input.here());
     let found = diagnostics::shown(input, kind, here);
     let help = match input.text(here).to_ascii_uppercase().as_str() {
-        "IS" => "two values are compared by `=` and `<>`",
+        "IS" => "two values are compared with `=` and `<>`",
         "IN" => "join comparisons: `x = 1 OR x = 2`, or write a CASE",
         "BETWEEN" => "join two comparisons: `x >= 1 AND x <= 5`",
         _ => "write `AND` or `OR` between two conditions",
@@ -386,7 +386,7 @@ fn extra_semicolon(input: &mut In<'_, '_, '_>, word: Kind) {
     input.take();
     input.report(
         Diagnostic::new(Code::E0013, span, format!("expected {word}, found `;`"))
-            .label("the condition goes on to the next word")
+            .label("the condition continues up to the next keyword")
             .help("delete this `;`")
             .fix(span, ""),
     );

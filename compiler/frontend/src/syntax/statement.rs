@@ -1,5 +1,5 @@
 //! Statements and lists of them. A statement that does not parse is reported where it breaks,
-//! and reading goes on at the next one.
+//! and reading continues at the next one.
 
 use crate::{
     ast::{Arm, BinaryOp, Expr, ExprKind, Finally, Label, MAX_CHAIN, Name, Statement, StatementKind, Try, each_part},

@@ -54,7 +54,7 @@ fn arguments<'s>(
     let read = whole.parse_with_state(kinds, &mut state).into_output().flatten();
     let start = crate::Span { file, start: from, end: from + 1 };
     if state.diagnostics.is_empty() && (read.is_none() || !is_lexed) {
-        let error = Diagnostic::new(Code::E0001, start, "these are no arguments of a test");
+        let error = Diagnostic::new(Code::E0001, start, "these are not arguments of a test");
         state.diagnostics.push(error.help("write them as in a call: `{Test(value := 1, limit := 2.5)}`"));
     }
     diagnostics.append(&mut state.diagnostics);

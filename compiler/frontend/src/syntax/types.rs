@@ -103,7 +103,7 @@ fn reference<'t, 's: 't>(spec: impl Rule<'t, 's, TypeSpec<'s>>) -> impl Rule<'t,
     kind.then(spec).map(|(kind, target)| TypeKind::Reference { kind, target: Box::new(target) })
 }
 
-/// `STRING`, `STRING[80]`, `STRING(80)`, WSTRING alike.
+/// `STRING`, `STRING[80]`, `STRING(80)`, and the same for WSTRING.
 fn string<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
     let wide = word("STRING").to(false).or(word("WSTRING").to(true));
     let in_brackets = expr().delimited_by(token(Kind::OpenBracket), token(Kind::CloseBracket));

@@ -135,7 +135,7 @@ fn bare_structure<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
     Item::Types(vec![TypeDecl::new(name, ty)])
 }
 
-/// Takes a unit that is inside another one, if the other one goes on after it.
+/// Takes a unit that is inside another one, if the other one continues after it.
 fn nested_unit(input: &mut In<'_, '_, '_>) -> bool {
     let Some((end, opened)) = input.state().open.last().copied() else { return false };
     if !opens_item(input.kind()) || !goes_on(input, end) {
@@ -339,7 +339,7 @@ fn test_unit<'s>(input: &mut In<'_, '_, 's>) -> Item<'s> {
             diagnostics::missing_end(input, end, opened);
         }
     }
-    // Not its head alone: what it declares is told apart from what SETUP does.
+    // Not only its head: its declarations are distinguished from those of SETUP.
     pou.span = pou.span.to(input.last());
     input.eat(Kind::Semicolon);
     Item::Test(TestUnit { part, pou })
@@ -362,7 +362,7 @@ fn head<'t, 's: 't>(kind: PouKind) -> impl Rule<'t, 's, Head<'s>> {
     modifiers().then(head).map(|(modifiers, (name, bases, vars, ty))| (modifiers, name, bases, vars, ty))
 }
 
-/// `EXTENDS a, b.c`, if it is there.
+/// `EXTENDS a, b.c`, if present.
 fn names_after<'t, 's: 't>(keyword: &'static str) -> impl Rule<'t, 's, Vec<Path<'s>>> {
     let path = name().separated_by(token(Kind::Dot)).at_least(1).collect::<Vec<_>>();
     let path = ahead(|input| routine::begins(input).is_none()).ignore_then(path);

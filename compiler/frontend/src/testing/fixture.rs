@@ -24,7 +24,7 @@ enum Mark {
     Setup(Setup),
 }
 
-/// When a METHOD is called that is no test.
+/// When a METHOD that is not a test is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Setup {
     First,
@@ -162,7 +162,7 @@ pub(crate) fn callers(files: &[File<'_>]) -> FxHashMap<Span, Caller> {
     found
 }
 
-/// Where the names of the fixtures are, and of the ABSTRACT CLASSes that these extend: they are no program under test.
+/// Where the names of the fixtures are, and of the ABSTRACT CLASSes that these extend: they are not part of the program under test.
 pub(crate) fn places(files: &[File<'_>]) -> FxHashSet<Span> {
     let marks = Marks::of(files);
     if marks.is_empty() {
@@ -216,14 +216,14 @@ pub(crate) fn expand(
     fixtures
 }
 
-/// `{Test}` in a CLASS that is no fixture: it would never run.
+/// `{Test}` in a CLASS that is not a fixture: it would never run.
 fn report_without_fixture<'s>(pou: &Pou<'s>, marks: &Marks<'s>, diagnostics: &mut Vec<Diagnostic>) {
     let is_extended = pou.modifiers.is_abstract.is_some();
     let own = pou.routines.iter().filter(|it| it.home.is_none() && !is_extended);
     for test in own.filter_map(|it| marks.tests_of(it).first()) {
         let class = pou.name.text;
         diagnostics.push(
-            Diagnostic::new(Code::W0102, test.span, format!("this test does not run: `{class}` is no fixture"))
+            Diagnostic::new(Code::W0102, test.span, format!("this test does not run: `{class}` is not a fixture"))
                 .label("the METHOD after it is never called")
                 .help(format!("write `{{TestFixture}}` before `CLASS {class}`")),
         );
@@ -264,7 +264,7 @@ impl<'a, 's> Written<'a, 's> {
                 let Mark::Setup(setup) = *mark else { continue };
                 match written.setups.iter().find(|it| it.0 == setup) {
                     Some((_, first)) => diagnostics.push(
-                        Diagnostic::new(Code::E0106, *place, "a fixture has one METHOD of this kind")
+                        Diagnostic::new(Code::E0106, *place, "a fixture can have only one METHOD of this kind")
                             .label("a second one")
                             .other(first.name.span, "the first one"),
                     ),

@@ -1,4 +1,4 @@
-//! Direct addresses, and where what lies at them is kept.
+//! Direct addresses, and their storage.
 
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -47,7 +47,7 @@ pub(crate) struct Addresses {
 }
 
 impl Addresses {
-    /// What lies at an address as a variable of this type, or of the first one declared.
+    /// The storage at an address, as a variable of this type, or of the first one declared.
     pub fn storage_of(&self, address: Address, ty: Option<Type>) -> Option<Storage> {
         let retyped = ty.and_then(|ty| self.retyped.get(&(address, ty)));
         retyped.map(|at| Storage::Hidden(*at)).or_else(|| self.storage.get(&address).copied())
@@ -71,7 +71,7 @@ impl Addresses {
         &self.own_fields
     }
 
-    /// What lies at an address starts with the value that one of its declarations gives it.
+    /// The storage at an address starts with the value that one of its declarations gives it.
     pub fn complete(&self, field: &mut Field) {
         let Some(start) = field.address.and_then(|it| self.starts.get(&(it, field.ty))) else { return };
         if let Some((initial, _)) = &start.initial {
@@ -83,7 +83,7 @@ impl Addresses {
     }
 }
 
-/// `%IX1.3`, `%QW10`, `%M5.1`, and through the levels of a station, `%IW1.2.3`. `None` for `%I*` and for what is no address.
+/// `%IX1.3`, `%QW10`, `%M5.1`, and through the levels of a station, `%IW1.2.3`. `None` for `%I*` and for text that is not an address.
 pub(crate) fn parse(text: &str) -> Option<Address> {
     let text = text.strip_prefix('%')?.to_ascii_uppercase();
     let area = match text.chars().next()? {
@@ -128,10 +128,14 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
     if let Some(part) = parts.find(|it| it.contains(|it: char| !it.is_ascii_digit())) {
         return Diagnostic::new(Code::E0409, name.span, format!("`{}` is not a direct address", name.text))
             .label(format!("`{part}` is not a number"))
-            .help("what follows the size is numbers with points between them: `%IX0.0`, `%IW1.2.3`");
+            .help("expected numbers with points between them after the size: `%IX0.0`, `%IW1.2.3`");
     }
     let message = if numbers > Module::LEVELS + 1 && !name.text.contains("..") {
-        format!("`{}` has {numbers} numbers, {} levels above the place are supported", name.text, Module::LEVELS)
+        format!(
+            "`{}` has {numbers} numbers, but at most {} levels above the place are supported",
+            name.text,
+            Module::LEVELS
+        )
     } else {
         format!("`{}` is not a direct address", name.text)
     };

@@ -114,7 +114,7 @@ fn join_promoted(a: Elementary, b: Elementary) -> Option<Elementary> {
     join(a, b).or_else(|| join_long_with_real(a, b))
 }
 
-/// 64 bits beside a real: an LREAL, which may round them. (CODESYS only warns of that: C0197)
+/// 64 bits with a real: an LREAL, which may round them. (CODESYS only warns of that: C0197)
 fn join_long_with_real(a: Elementary, b: Elementary) -> Option<Elementary> {
     let is_long = |it: Elementary| as_number(it).is_integer() && it.repr().size() == 8;
     (a.is_real() && is_long(b) || is_long(a) && b.is_real()).then_some(Elementary::Lreal)

@@ -28,7 +28,7 @@ use std::rc::Rc;
 /// A declaration, and what it was resolved to.
 #[derive(Debug)]
 pub(crate) enum Slot<T> {
-    /// Not resolved, or while that goes on: it is needed in a circle.
+    /// Not resolved, or being resolved: then it depends on itself.
     Open,
     Done(T),
     /// It has been reported.
@@ -348,7 +348,8 @@ impl<'s> Declarations<'s> {
         let library = &references.find(|it| it.namespace.eq_ignore_ascii_case(namespace))?.library;
         let is_there = self.names.libraries().any(|it| it.eq_ignore_ascii_case(library));
         let path = format!("`libraries = [\"…/{library}.plcproj\"]`");
-        (!is_there).then(|| format!("have its sources in staunch.toml, a folder or project named `{library}`: {path}"))
+        (!is_there)
+            .then(|| format!("add its sources to staunch.toml, as a folder or project named `{library}`: {path}"))
     }
 
     /// A namespace by which the project refers to a library that is not there.
@@ -363,10 +364,10 @@ impl<'s> Declarations<'s> {
         if !missing::is_library(self.dialect(place), namespace) {
             return None;
         }
-        let error = Diagnostic::new(Code::E0102, place, format!("the library `{namespace}` is not there"));
+        let error = Diagnostic::new(Code::E0102, place, format!("the library `{namespace}` is not available"));
         let path = format!("`libraries = [\"…/{namespace}\"]`");
-        let help = format!("have its sources in staunch.toml, a folder or project named `{namespace}`: {path}");
-        Some(error.label("it is not among those that are bundled").help(help))
+        let help = format!("add its sources to staunch.toml, as a folder or project named `{namespace}`: {path}");
+        Some(error.label("it is not bundled with Staunch").help(help))
     }
 
     /// What a POU is called for people: `Class.Method`.
@@ -381,7 +382,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The routines of this name that instances with a state have.
+    /// The routines with this name that instances with a state have.
     pub fn routines_of(&self, state: StructId, name: &str) -> Option<Routines> {
         self.pous[self.slot_of_instance(state)?].routines.get(&Key(name)).copied()
     }
@@ -461,7 +462,7 @@ impl<'s> Declarations<'s> {
             Slot::Failed => None,
             Slot::Open => {
                 let name = self.globals[at].name;
-                self.error(Code::E0402, name.span, format!("the declaration of `{}` needs itself", name.text));
+                self.error(Code::E0402, name.span, format!("the declaration of `{}` depends on itself", name.text));
                 None
             }
         }
@@ -617,7 +618,7 @@ impl<'s> Declarations<'s> {
         if missing::is_member(self.dialect(name.span), &owner, name.text) {
             return self.report(
                 Diagnostic::new(Code::E0902, name.span, format!("`{}` of {owner} is not supported yet", name.text))
-                    .label("a program is told nothing of the machine that runs it"),
+                    .label("a program does not know the machine that runs it"),
             );
         }
         if let Some((slot, declared)) = self.routines_on(ty, name.text).and_then(|it| it.called) {
@@ -626,9 +627,9 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(
                     Code::E0107,
                     name.span,
-                    format!("`{}` is {kind} of `{owner}`, and not called", name.text),
+                    format!("`{}` is {kind} of `{owner}`, but is not called", name.text),
                 )
-                .label("a call has its parentheses, also without arguments")
+                .label("a call needs parentheses, even without arguments")
                 .other(declared, "declared here")
                 .help(format!("call it: `{}(…)`", name.text)),
             );

@@ -48,9 +48,7 @@ impl<'s> Declarations<'s> {
         let routine = Routine {
             kind: RoutineKind::Function,
             name,
-            doc: Some(format!(
-                "What the class of an instance has for `{called}`. A reference to none faults at the call."
-            )),
+            doc: Some(format!("Calls `{called}` of the instance's class. A null reference faults at the call.")),
             location,
             state: None,
             params: draft.params,

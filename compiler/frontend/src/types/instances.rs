@@ -98,7 +98,7 @@ impl<'s> Declarations<'s> {
         if *count > MAX_INSTANCES {
             let name = self.pous[of].ast.name.text;
             let message = format!("`{name}` is called with more than {MAX_INSTANCES} sets of types");
-            self.report(Diagnostic::new(Code::E0901, call, message).label("each would be a FUNCTION of its own"));
+            self.report(Diagnostic::new(Code::E0901, call, message).label("each would be a separate FUNCTION"));
             return None;
         }
         let slot = self.pous.len();
@@ -134,7 +134,7 @@ impl<'s> Declarations<'s> {
         self.pous[slot].instance.as_ref().map_or(slot, |it| it.of)
     }
 
-    /// With other types it calls itself all the same: what it is given does not decide what it calls. Wherever a call
+    /// With other types it still calls itself: its arguments do not decide what it calls. Wherever a call
     /// enters the circle, that is said of the first of it in the text, so that it is said once.
     fn report_generic_recursion(&mut self, mut way: Vec<usize>, last: Span) {
         let again = self.pous[way[0]].ast.name.text;
@@ -143,9 +143,9 @@ impl<'s> Declarations<'s> {
         let name = self.pous[way[0]].ast.name;
         let way: Vec<_> = way.iter().chain([&way[0]]).map(|it| self.pous[*it].ast.name.text).collect();
         let error = Diagnostic::new(Code::E0310, name.span, format!("`{}` calls itself", name.text))
-            .label("recursion has no bound on its stack")
+            .label("recursion has no limit on its stack")
             .other(last, format!("`{again}` is called here"))
-            .note(format!("the calls go {}", way.join(" -> ")))
+            .note(format!("the chain of calls is {}", way.join(" -> ")))
             .help("write it as a loop");
         self.report(error);
     }
@@ -178,7 +178,7 @@ impl<'s> Declarations<'s> {
         name
     }
 
-    /// Adds to what was reported since then which instance it is about. What is so with all types is said once.
+    /// Adds to what was reported since then which instance it is about. A message that applies to all types is given once.
     pub fn say_of_instance(&mut self, slot: usize, since: usize) {
         let calls = self.calls_of(slot);
         for mut it in self.log.diagnostics.split_off(since) {

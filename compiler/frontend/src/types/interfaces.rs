@@ -1,4 +1,4 @@
-//! INTERFACEs and bases: which classes have them, and the numbers by which a reference to an instance tells its class.
+//! INTERFACEs and bases: which classes have them, and the numbers by which a reference to an instance identifies its class.
 
 use super::declarations::{Declarations, Routines};
 use crate::ast::PouKind;
@@ -9,7 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Elementary, InterfaceId, RefKind, StructId, Type};
 use std::rc::Rc;
 
-/// So many classes can be told apart by references; 0 is none.
+/// So many classes can be distinguished by references; 0 is none.
 const MAX_NUMBERS: u64 = (1 << (64 - staunch_runtime::reference::CLASS)) - 1;
 
 impl Declarations<'_> {
@@ -121,7 +121,7 @@ impl Declarations<'_> {
         self.table.interfaces.referred.extend(first);
     }
 
-    /// The instance that lies where a variable begins, of a class that references tell apart: itself, the first element
+    /// The instance at the start of a variable, of a class that references distinguish: itself, the first element
     /// of an array, the first member of a structure.
     pub fn first_instance(&mut self, mut ty: Type) -> Option<StructId> {
         loop {
@@ -207,7 +207,7 @@ impl Declarations<'_> {
         }
     }
 
-    /// Whether the class of an instance may have to be told from its reference: others have the same INTERFACE or
+    /// Whether the class of an instance may have to be found from its reference: others have the same INTERFACE or
     /// base.
     pub fn is_told_apart(&mut self, slot: usize) -> bool {
         let is_kin = self.base_of(slot).is_some() || self.heirs().contains_key(&slot);
@@ -267,7 +267,7 @@ impl Declarations<'_> {
         if number > MAX_NUMBERS && !std::mem::replace(&mut self.table.interfaces.is_too_many, true) {
             self.report(
                 Diagnostic::new(Code::E0901, span, format!("more than {MAX_NUMBERS} classes have INTERFACEs"))
-                    .label("references tell no more of them apart"),
+                    .label("references cannot distinguish more than that"),
             );
         }
         number.min(MAX_NUMBERS)

@@ -7,7 +7,7 @@ use staunch_ir::Place;
 #[derive(Clone, Debug)]
 pub(crate) struct Jumps<'s> {
     pub labels: Vec<Key<'s>>,
-    /// The number of the label where the list goes on; 0 from its start, and while a segment runs.
+    /// The number of the label where the list continues; 0 from its start, and while a segment runs.
     pub next: Place,
     /// How many loops of the source are around the list.
     pub loops: usize,

@@ -1,4 +1,4 @@
-//! FUNCTIONs and METHODs of one name: which there are, and what they are called, by the types that they take.
+//! Overloaded FUNCTIONs and METHODs: which exist, and what they are called, by the types that they take.
 
 use super::declarations::{Declarations, Slot};
 use super::signature::Formal;

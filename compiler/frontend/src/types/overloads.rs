@@ -1,4 +1,4 @@
-//! FUNCTIONs of one name, and METHODs of one class and name, that differ in their parameters.
+//! FUNCTIONs, and METHODs of one class, that have the same name and differ in their parameters.
 
 use rustc_hash::FxHashMap;
 use std::rc::Rc;

@@ -1,7 +1,7 @@
 //! VAR_IN_OUTs that METHODs of their FUNCTION_BLOCK use, which an instance keeps as a reference, and those that are given
-//! instances of what extends their class. They are passed as references, whose numbers tell
+//! instances of what extends their class. They are passed as references, whose numbers identify
 //! the class; all others stay what they are. Which ones these are is known when all bodies are checked: then the
-//! program is checked again with them. Routines of one name have them alike, since one may override the other.
+//! program is checked again with them. Routines with the same name have the same ones, since one may override the other.
 
 use super::declarations::{Declarations, PouSlot};
 use super::in_outs::{InOut, Polymorphic};

@@ -92,7 +92,7 @@ impl<'s> Scope<'s> {
         self.index = self.variables.iter().enumerate().map(|(at, it)| (Key(it.name.text), at)).collect();
     }
 
-    /// The earlier variable of that name, if there is one.
+    /// The earlier variable with that name, if any.
     pub fn insert(&mut self, variable: impl Into<Rc<Variable<'s>>>) -> Result<(), ast::Name<'s>> {
         let variable = variable.into();
         if let Some(at) = self.index.get(&Key(variable.name.text)) {
@@ -107,7 +107,7 @@ impl<'s> Scope<'s> {
         self.index.remove(&Key(name));
     }
 
-    /// Enters a variable, which hides an earlier one of its name.
+    /// Enters a variable, which hides an earlier one with its name.
     pub fn insert_over(&mut self, variable: Rc<Variable<'s>>) {
         self.index.insert(Key(variable.name.text), self.variables.len());
         self.variables.push(variable);

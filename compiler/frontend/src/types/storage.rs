@@ -20,7 +20,7 @@ impl<'s> Declarations<'s> {
         id
     }
 
-    /// The first field of that name that the source declares.
+    /// The first field with that name that the source declares.
     pub fn field_named(&self, id: StructId, name: &str) -> Option<FieldId> {
         let structure = self.program.structure(id);
         let names = structure.fields.iter().map(|it| it.name.as_str());
@@ -63,7 +63,7 @@ impl<'s> Declarations<'s> {
         self.shape(ty).align
     }
 
-    /// The value of the first enumerator of that name.
+    /// The value of the first enumerator with that name.
     pub fn enumerator_named(&self, id: EnumId, name: &str) -> Option<Value> {
         let values = &self.program.enumeration(id).values;
         let at = self.table.index.values.find(id, name, values.iter().map(|it| it.name.as_str()));

@@ -39,7 +39,7 @@ pub(crate) struct AnyInputs {
     pub classes: FxHashMap<Span, Class>,
 }
 
-/// What is known of the types of a program beside what the program itself says.
+/// What is known of the types of a program in addition to the program itself.
 #[derive(Debug, Default)]
 pub(crate) struct Table<'s> {
     pub index: Index,
@@ -96,7 +96,7 @@ pub(crate) struct Interfaces {
     pub referred: FxHashSet<usize>,
     /// Calls by INTERFACEs are of these alone.
     pub only: Option<FxHashSet<usize>>,
-    /// The numbers of the classes that references tell apart.
+    /// The numbers of the classes that references distinguish.
     pub numbers: FxHashMap<StructId, u64>,
     pub is_too_many: bool,
     /// When they were asked for: the classes that extend others, by these.

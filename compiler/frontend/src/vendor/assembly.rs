@@ -30,7 +30,7 @@ pub struct Problem {
 pub enum Trouble {
     /// The file cannot be read as what it is.
     Broken,
-    /// There is no such file.
+    /// The file does not exist.
     Absent,
     /// A body in another language.
     OtherLanguage,
@@ -64,13 +64,13 @@ pub struct Chunk {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Says {
-    /// What is there.
+    /// The text as it is.
     Itself,
     /// `<` for `&lt;`.
     Symbol(char),
     /// Words of Structured Text for what is said in another way.
     Words(String),
-    /// Nothing, and why what is there is wrong.
+    /// Nothing, and why the text is wrong.
     Wrong(Trouble, String),
 }
 
@@ -83,7 +83,7 @@ impl Chunk {
         Self { place: place.clone(), says: Says::Words(words.into()) }
     }
 
-    /// What is there is not what its system writes.
+    /// The text is not what its system writes.
     pub fn odd(message: impl Into<String>, place: &Range<usize>) -> Self {
         Self { place: place.clone(), says: Says::Wrong(Trouble::Odd, message.into()) }
     }

@@ -44,7 +44,7 @@ fn controller<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names, out
             "ParameterConnection" => {
                 let end = |it: &str| element.attribute(file, it).unwrap_or_default();
                 let message = format!(
-                    "`{}` is connected to `{}`: such connections are not made",
+                    "`{}` is connected to `{}`: such connections are not supported",
                     end("EndPoint1"),
                     end("EndPoint2")
                 );

@@ -8,7 +8,7 @@ pub fn listed(text: &str) -> Result<Vec<String>, String> {
     if text.trim_start().starts_with("Microsoft Visual Studio Solution File") {
         return Ok(projects_of_a_solution(text));
     }
-    let no_project = || "this is no project of TwinCAT's".to_owned();
+    let no_project = || "this is not a TwinCAT project".to_owned();
     let broken = |it: Broken| format!("the project is not well-formed XML: {}", it.why);
     let mut reader = Reader::new(text).ok_or_else(no_project)?;
     let root = reader.root().map_err(broken)?.ok_or_else(no_project)?;

@@ -1,5 +1,5 @@
 //! PLCopen XML (TC6), as CODESYS, TwinCAT, Beremiz and OpenPLC's editor write it: declarations are elements, bodies are
-//! escaped text. CODESYS adds declarations as text, and methods, properties and lists, beside the standard's elements.
+//! escaped text. CODESYS adds declarations as text, and methods, properties and lists, to the standard's elements.
 
 mod declaration;
 mod tasks;

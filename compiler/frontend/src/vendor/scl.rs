@@ -21,7 +21,7 @@ const BLOCKS: [(&str, &str, &str); 6] = [
     ("ORGANIZATION_BLOCK", "PROGRAM", "END_PROGRAM"),
     ("DATA_BLOCK", "", ""),
     ("TYPE", "TYPE", "END_TYPE"),
-    // Not of the language; tools that read it beside Structured Text have it.
+    // Not in the language; tools that also read Structured Text have it.
     ("PROGRAM", "PROGRAM", "END_PROGRAM"),
 ];
 
@@ -31,7 +31,7 @@ const NOTES: [&str; 5] = ["VERSION", "TITLE", "AUTHOR", "FAMILY", "NAME"];
 /// Whether a text begins as such a source does: with a block whose name is in quotes, or one that no other system has;
 /// or it begins with another block of the language, and uses local names. One `#` may be a slip.
 pub fn is_source(text: &str) -> bool {
-    // What is not SCL is not to be read as a whole to be told so.
+    // A file that is not SCL should not be read as a whole to find that out.
     let mut tokens = token::Tokens::new(text).filter(|it| it.kind != Kind::Pragma);
     let Some(head) = tokens.next().filter(|it| it.kind == Kind::Word) else { return false };
     let word = &text[head.place];
@@ -166,8 +166,8 @@ impl<'t> Scl<'t> {
             let message = format!("the source does not say which event starts `{name}`");
             self.refuse(place.start..place.start, message);
             self.out.help(
-                "what runs at the start, write in `Main` until a member of a data block says that it has run, `IF NOT \"Start\".done THEN … END_IF;`; what runs \
-                 in intervals, as a PROGRAM that a TASK of a CONFIGURATION runs",
+                "write start-up code in `Main`, guarded by a member of a data block, `IF NOT \"Start\".done THEN … END_IF;`; write code that runs \
+                 at intervals as a PROGRAM that a TASK of a CONFIGURATION runs",
             );
         }
         self.replace(place.clone(), &name);
@@ -318,12 +318,12 @@ impl<'t> Scl<'t> {
         let address = self.text(at).to_ascii_uppercase();
         let start = self.place(at).start;
         self.copy_to(place.start);
-        let message = format!("`{address}` is an address: blocks share no memory but by name");
+        let message = format!("`{address}` is an address: blocks share memory only by name");
         self.out.problem(Trouble::NotSupported, message, &(start..start));
         // What reads on finds an operand of the same size.
         let of_a_block = address.split_once(".DB").map(|it| it.1);
         if let Some(size) = of_a_block.or_else(|| address.strip_prefix("%DB")) {
-            self.out.help("name the member of the data block that is there");
+            self.out.help("write the member of the data block at this address");
             let size = size.get(..1).unwrap_or("X");
             self.replace(place, &if size == "X" { "%MX0.0".to_owned() } else { format!("%M{size}0") });
         }

@@ -82,7 +82,7 @@ fn what_is_no_document_is_said_where() {
         ("<TcPlcObject><POU></GVL></POU></TcPlcObject>", "</GVL>", "expected"),
         ("<TcPlcObject><POU><Declaration>&many;</Declaration></POU></TcPlcObject>", "&many;", "entity"),
         ("<TcPlcObject><POU><Declaration><![CDATA[PROGRAM", "<![CDATA[PROGRAM", ""),
-        ("<TcPlcObject><POU/></TcPlcObject><extra/>", "<extra/>", "a second element"),
+        ("<TcPlcObject><POU/></TcPlcObject><extra/>", "<extra/>", "a second root element"),
         ("<TcPlcObject><POU/></TcPlcObject> x", " x", "text outside"),
         (&format!("<TcPlcObject>{}", "<a>".repeat(2000)), "<a>", "nested"),
     ] {
@@ -152,7 +152,7 @@ fn a_project_excludes_files_and_folders() {
 #[test]
 fn a_file_that_holds_nothing_is_said() {
     for text in ["<TcPlcObject></TcPlcObject>", "<TcPlcObject/>"] {
-        assert_eq!(read(text).unwrap().problems[0].message, "this file of TwinCAT's holds nothing");
+        assert_eq!(read(text).unwrap().problems[0].message, "this TwinCAT file is empty");
     }
     let without = read("<TcPlcObject><POU Name='P'><Declaration/></POU></TcPlcObject>").unwrap();
     assert_eq!(without.problems[0].message, "`P` has no declaration");

@@ -1,5 +1,5 @@
 //! TwinCAT 3's files, `.TcPOU`, `.TcGVL`, `.TcDUT` and `.TcIO`: declarations and bodies in CDATA sections; methods,
-//! properties and actions are elements beside them, and END_… is left out. A `.TcTTO` is a task, and a `.TcTLEO` an
+//! properties and actions are elements next to them, and END_… is left out. A `.TcTTO` is a task, and a `.TcTLEO` an
 //! enumeration with a text for each of its values.
 
 use super::assembly::{Assembly, Chunk, Trouble};
@@ -10,7 +10,7 @@ use super::xml::{Broken, Element, Part, Reader};
 pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
     let mut out = Assembly::default();
     if let Err(broken) = units(file, &mut reader, &mut out) {
-        let message = format!("this file of TwinCAT's is not well-formed XML: {}", broken.why);
+        let message = format!("this TwinCAT file is not well-formed XML: {}", broken.why);
         out.problem(Trouble::Broken, message, &broken.place);
     }
     out
@@ -40,7 +40,7 @@ fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Resu
         }
     }
     if is_empty {
-        out.problem(Trouble::Odd, "this file of TwinCAT's holds nothing".to_owned(), &root);
+        out.problem(Trouble::Odd, "this TwinCAT file is empty".to_owned(), &root);
     }
     Ok(())
 }
@@ -61,12 +61,12 @@ fn task<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, out: 
                 let is_number = !text.is_empty() && text.bytes().all(|it| it.is_ascii_digit());
                 match open.as_slice() {
                     [_, "CycleTime" | "Priority"] if !is_number => {
-                        out.problem(Trouble::Odd, format!("`{text}` is no number"), &at);
+                        out.problem(Trouble::Odd, format!("`{text}` is not a number"), &at);
                     }
                     [_, "CycleTime"] if text.bytes().all(|it| it == b'0') => {
                         out.problem(
                             Trouble::Odd,
-                            format!("`{text}` is no cycle time: it is in microseconds, and above 0"),
+                            format!("`{text}` is not a cycle time: expected microseconds above 0"),
                             &at,
                         );
                     }

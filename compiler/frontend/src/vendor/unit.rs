@@ -21,7 +21,7 @@ pub enum Body {
     #[default]
     None,
     Text(Vec<Chunk>),
-    /// A language that is no text, and where it begins.
+    /// A language that is not text, and where it begins.
     Other(&'static str, Range<usize>),
 }
 
@@ -83,7 +83,8 @@ impl<'t> Unit<'t> {
             }
         }
         if let Some(place) = &self.second_body {
-            let message = format!("`{}` has several bodies (worksheets), of which the file says no order", self.name);
+            let message =
+                format!("`{}` has several bodies (worksheets), whose order the file does not give", self.name);
             out.problem(Trouble::SecondBody, message, place);
         }
         let end = match self.what {
@@ -99,7 +100,7 @@ impl<'t> Unit<'t> {
 }
 
 impl Unit<'_> {
-    /// Reports a comment that goes on where its part of the file ends, and closes it there.
+    /// Reports a comment that is still open where its part of the file ends, and closes it there.
     fn close_comments(&self, file: &str, chunks: &[Chunk], what: &str, out: &mut Assembly) {
         let text: String = chunks.iter().map(|it| written(file, it)).collect();
         let Some((mut at, close)) = open_comment(&text) else { return };

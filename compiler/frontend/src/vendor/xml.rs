@@ -7,7 +7,7 @@ use super::assembly::{Chunk, Says};
 use core::ops::Range;
 use quick_xml::events::{BytesStart, Event};
 
-/// Elements that lie deeper are no program's.
+/// No program has elements that are nested deeper.
 const DEEPEST: usize = 1000;
 
 /// What comes next.
@@ -42,7 +42,7 @@ pub struct Reader<'t> {
     is_empty: bool,
     /// The root was opened.
     has_root: bool,
-    /// What is wrong with the root's tag: what kind of file it is, is seen by its name all the same.
+    /// What is wrong with the root's tag: its name still shows what kind of file it is.
     wrong_root: Option<Broken>,
     last: Range<usize>,
 }
@@ -177,13 +177,13 @@ impl<'t> Reader<'t> {
         }
         let broken = |why: &str| Err(Broken { place: place.clone(), why: why.to_owned() });
         match event {
-            Event::Start(_) | Event::Empty(_) if self.has_root => broken("a second element outside of all others"),
+            Event::Start(_) | Event::Empty(_) if self.has_root => broken("a second root element"),
             Event::Start(_) | Event::Empty(_) => {
                 self.has_root = true;
                 Ok(())
             }
             Event::Text(text) if text.trim_matches([' ', '\t', '\r', '\n', '\u{feff}']).is_empty() => Ok(()),
-            Event::Text(_) | Event::CData(_) | Event::GeneralRef(_) => broken("text outside of all elements"),
+            Event::Text(_) | Event::CData(_) | Event::GeneralRef(_) => broken("text outside the root element"),
             Event::End(_) | Event::Eof | Event::Comment(_) | Event::Decl(_) | Event::PI(_) | Event::DocType(_) => {
                 Ok(())
             }
@@ -224,7 +224,7 @@ impl<'t> Element<'t> {
         let tag = &file[self.place.clone()];
         let tag = tag.strip_prefix('<')?.trim_end_matches('>').trim_end_matches('/');
         let mut attributes = quick_xml::events::attributes::Attributes::new(tag, tag.find(char::is_whitespace)?);
-        // Whether a name is there twice would take time by the square of their number.
+        // The check for duplicates would take time quadratic in their number.
         attributes.with_checks(false);
         let found = attributes.flatten().find(|it| it.key.local_name().as_ref() == name)?;
         // What is borrowed is a part of the file.

@@ -40,7 +40,7 @@ impl Scope<'_> {
         Bytes(&self.interpreter.memory[..self.interpreter.initial.len()])
     }
 
-    /// A scalar or string behind a reference, but for a standard block's pin, whose block is found whole.
+    /// A scalar or string reached through a reference, except a standard block's pin, whose block is found whole.
     pub(super) fn reached(&self, place: &Place) -> Result<Option<Reached>, Fault> {
         let program = self.interpreter.program;
         let Some(followed) = followed(program, place) else { return Ok(None) };
@@ -69,7 +69,7 @@ impl Scope<'_> {
         Ok((reference, u64::try_from(distance).expect("sizes are below the limit of 1 GiB")))
     }
 
-    /// Where a variable behind a reference lies, to be handed on whole.
+    /// Where a variable reached through a reference is, to be passed on whole.
     pub(super) fn find(&self, place: &Place) -> Result<usize, Fault> {
         let program = self.interpreter.program;
         let followed = followed(program, place).expect("a place that leads through a reference");

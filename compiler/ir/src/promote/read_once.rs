@@ -95,7 +95,7 @@ impl Reader<'_> {
     }
 }
 
-/// Where the statements of a loop's body begin that are no part of how it runs.
+/// Where the statements of a loop's body begin, after those that control the loop.
 fn head(body: &[Statement]) -> usize {
     let test = body.iter().position(|it| exit_condition(it).is_some()).map_or(0, |it| it + 1);
     test + usize::from(body.get(test).is_some_and(|it| matches!(it.kind, StatementKind::Turn)))
@@ -158,7 +158,7 @@ impl Rewrite for Renamer<'_> {
         }
     }
 
-    /// What is behind the reference.
+    /// The target of the reference.
     fn place(&mut self, place: &mut Place) {
         let Some(at) = place.projections.iter().position(|it| matches!(it, Projection::Deref { .. })) else { return };
         if place.before(at, self.place.ty).is_same_variable(self.place) {

@@ -33,7 +33,7 @@ fn first(statement: &Statement, place: &Place) -> First {
                 _ => First::Other,
             }
         }
-        // Another way goes on from there.
+        // Control continues elsewhere from there.
         StatementKind::Exit | StatementKind::Continue | StatementKind::Return => First::Other,
         _ => of_any(statement, place),
     }

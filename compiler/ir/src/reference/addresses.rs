@@ -114,7 +114,7 @@ impl<'p> Finder<'p> {
         });
     }
 
-    /// The innermost variable that holds the place. What lies behind a reference is known already.
+    /// The innermost variable that holds the place. The target of a reference is known already.
     fn place(&mut self, id: RoutineId, routine: &Routine, place: &Place) {
         let Some(mut ty) = self.program.root_type(routine, place.root) else { return };
         let mut variable = None;

@@ -210,7 +210,7 @@ impl<'p> Finder<'p> {
         }
     }
 
-    /// What is found at a place. What lies behind a reference may be what that refers to, or what comes with it.
+    /// The sources of a place's contents. The target of a reference may be what that refers to, or what comes with it.
     fn contents(&self, place: &Place) -> Sources {
         match place.root {
             Root::Local(id) => self.held[id.index()].clone(),
@@ -220,7 +220,7 @@ impl<'p> Finder<'p> {
         }
     }
 
-    /// What a reference to a place refers to, and what lies there.
+    /// What a reference to a place refers to, and the contents there.
     fn address(&self, place: &Place) -> Sources {
         let mut sources = self.contents(place);
         match (place.root, place.is_followed()) {

@@ -3,7 +3,7 @@
 use super::table::wanted;
 use crate::{BlockId, FieldId, Location, Place, Program, Projection, Type, visit};
 
-/// A place behind a reference, taken apart.
+/// A place reached through a reference, in its parts.
 #[derive(Clone, Debug)]
 pub struct Followed<'a> {
     /// The variable that holds the reference.
@@ -37,14 +37,14 @@ pub fn followed<'a>(program: &Program, place: &'a Place) -> Option<Followed<'a>>
 }
 
 impl Followed<'_> {
-    /// How many steps of the way lead to an element of an array that is pointed to: what is there is looked up as
+    /// How many steps of the way lead to an element of an array that is pointed to: the element is looked up as
     /// what it is, since the array is most often declared larger than the variable.
     pub fn subscripts(&self) -> usize {
         let is_subscript = |it: &&Projection| matches!(it, Projection::Index { .. });
         self.way.iter().take_while(is_subscript).count()
     }
 
-    /// The type of what is there.
+    /// The type of that element.
     pub fn looked_up(&self, program: &Program) -> Option<Type> {
         self.way[..self.subscripts()].iter().try_fold(self.target, |ty, it| program.part(ty, it))
     }

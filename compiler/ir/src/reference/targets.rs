@@ -1,6 +1,6 @@
 //! Where references lead, as far as it is known before a program runs: the variables of a type among the objects, so
-//! that a back end can look at the few places where one will be, and the object that holds a place. What is not found
-//! here is left to the [table](super::table), which decides every access.
+//! that a back end can look at the few places where one will be, and the object that holds a place. Targets that are not found
+//! here are left to the [table](super::table), which decides every access.
 
 use super::objects::{Object, objects, roots};
 use super::table::wanted;
@@ -58,7 +58,7 @@ impl<'p> Targets<'p> {
     }
 
     /// The variables of exactly this type that references may lead to, by their objects: those that are objects, or
-    /// elements of one, before those further inside. None in a pool, where it has to be asked whether one is there.
+    /// elements of one, before those further inside. None in a pool, where each access must check whether the object exists.
     pub fn lead_to(&self, ty: Type) -> Vec<Target> {
         if self.layout.size(ty) == 0 {
             return Vec::new();

@@ -109,7 +109,7 @@ fn only_the_step_may_reach_the_counter_and_nothing_the_bound() {
         (None, None)
     );
     assert_eq!((of(vec![assign(temp(), int(1)), up()]), of(vec![up(), step(Op::Sub, &temp(), 1)])), (None, None));
-    // What is made of another variable is no step.
+    // A value computed from another variable is not a step.
     let above = |body| found(&while_loop(compare(Op::Gt, load(count()), load(temp())), body));
     let one_less = |place| Expr::apply(Op::Sub, Type::INT, vec![load(place), int(1)], AT);
     assert_eq!(above(vec![assign(count(), one_less(count()))]), Some((-1, 1, false)));

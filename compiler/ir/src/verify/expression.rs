@@ -31,7 +31,7 @@ impl Verifier<'_> {
                 let lasts = !matches!(place.root, Root::Local(_)) || place.is_followed();
                 self.require(lasts, expr.at, "the address of what lives for one call");
                 let refers = matches!(expr.ty, Type::Reference(_));
-                self.require(refers, expr.at, "an address that is no reference");
+                self.require(refers, expr.at, "an address that is not a reference");
             }
             ExprKind::Apply(op, operands) => {
                 operands.iter().for_each(|operand| self.expr(body, operand));

@@ -1,4 +1,4 @@
-//! Places: what is there, of which type, and whether it may be written.
+//! Places: their contents, their type, and whether they may be written.
 
 use super::Verifier;
 use super::statement::Body;

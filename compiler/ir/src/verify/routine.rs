@@ -129,7 +129,7 @@ impl Verifier<'_> {
         if let (Some(view), Some(ty)) = (variable.view, ty) {
             let bits = self.bits_of(ty);
             let is_inside = bits.is_some_and(|bits| view.bit + u64::from(view.address.width) <= bits);
-            self.require(is_inside, at, format_args!("{} is no part of what it is a view of", variable.name));
+            self.require(is_inside, at, format_args!("{} is not part of what it is a view of", variable.name));
         }
     }
 

@@ -141,7 +141,7 @@ impl<'p> Verifier<'p> {
     fn for_loop(&mut self, body: &Body<'p>, it: &For, at: Location) {
         let ty = it.counter.ty;
         self.writable(body, &it.counter, at);
-        self.require(!it.counter.is_followed(), at, "a counter behind a reference");
+        self.require(!it.counter.is_followed(), at, "a counter reached through a reference");
         self.expr_of(body, &it.first, ty);
         let number = self.program.counted(ty);
         self.expr_of(body, &it.last, number);

@@ -63,7 +63,7 @@ impl Verifier<'_> {
             self.location(field.location);
             self.part(field.ty, known, field.location);
         }
-        self.require(structure.align.is_power_of_two(), structure.location, "an alignment that is no power of two");
+        self.require(structure.align.is_power_of_two(), structure.location, "an alignment that is not a power of two");
         for overlay in &structure.overlays {
             self.part(overlay.ty, known, overlay.location);
             self.require(overlay.field.index() < structure.fields.len(), overlay.location, "no such field");

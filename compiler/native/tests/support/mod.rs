@@ -151,7 +151,7 @@ impl Native {
         }
         let (jit, layout) = (Jit::new(program).unwrap(), Layout::new(program));
         let map = Map::parse(&symbols::map_text(program, &layout)).unwrap();
-        // SAFETY: the code was made of the program that the map describes, and is kept beside it.
+        // SAFETY: the code was made of the program that the map describes, and is kept with it.
         let machine = unsafe { Compiled::new(&map, jit.init, jit.scan) };
         Self { machine, _jit: jit, layout }
     }

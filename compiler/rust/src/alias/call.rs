@@ -63,7 +63,7 @@ impl Call {
                 }
             };
             for slot in references.iter().filter(|slot| ancestor.slots.contains(&slot.number)) {
-                // The instance that the others lie in stays the callee's own.
+                // The instance that contains the others stays the callee's own.
                 if !(root == SharedRoot::Instance && slot.number == 0) {
                     let steps = slot.place.projections[ancestor.prefix.len()..].iter().map(step).collect();
                     bindings[slot.number] = Binding::Within { root, steps };

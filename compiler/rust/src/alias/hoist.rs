@@ -16,7 +16,7 @@ impl Body {
         if reads { self.hoist("value", value, out) } else { value }
     }
 
-    /// Evaluates a subscript and faults unless it lies in its bounds.
+    /// Evaluates a subscript and faults unless it is within its bounds.
     pub fn fix_index(&mut self, index: Expr, (low, high): (i64, i64), at: Location, out: &mut Block) -> Expr {
         if self.is_subscript(&index) {
             return index;

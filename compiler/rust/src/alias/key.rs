@@ -81,5 +81,5 @@ impl Key {
 
 /// The type of a part.
 pub fn element(program: &Program, ty: Type, projection: &Projection) -> Type {
-    program.part(ty, projection).expect("verified IR: each part is there")
+    program.part(ty, projection).expect("verified IR: each part exists")
 }

@@ -12,7 +12,7 @@ pub struct Slot<'a> {
     pub place: &'a Place,
 }
 
-/// A place that several references lie in. Its prefix has no subscripts.
+/// A place that contains several references. Its prefix has no subscripts.
 #[derive(Debug)]
 pub struct Ancestor {
     pub root: Root,

@@ -1,4 +1,4 @@
-//! Compiles Structured Text, prints it as Rust, and runs that beside the interpreter.
+//! Compiles Structured Text, prints it as Rust, and runs that together with the interpreter.
 #![allow(dead_code, reason = "not every test uses every part")]
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! The scan's time: what reads it, what lets it pass in a unit test, and what is due by it.
+//! The scan's time: blocks that read it, let it pass in a unit test, and decide what is due.
 
 use crate::block::pins;
 use crate::{Context, Location, Time};
@@ -30,7 +30,7 @@ pins!([] AdvanceTime {
     Input { in_: TIME = "IN" }
 });
 
-/// `now` is the scan's time, which every call in a scan sees alike: what `TIME()` and `LTIME()` read.
+/// `now` is the scan's time, the same in every call of a scan: what `TIME()` and `LTIME()` read.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Clock {
@@ -44,7 +44,7 @@ impl Clock {
         self.step(cx);
     }
 
-    /// As [`call`](Self::call): there are no inputs.
+    /// Like [`call`](Self::call), since it has no inputs.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
         self.now = cx.now();
@@ -85,7 +85,7 @@ pins!([] MinorFault {
     Input { file: UINT = "FILE", column: UINT = "COLUMN", line: UDINT = "LINE" }
 });
 
-/// What a program's scan knows of itself: `first` in the first one after a start, and in `cycle` the time from one to the
+/// A scan's information about itself: `first` in the first one after a start, and in `cycle` the time from one to the
 /// next; 0 where the host does not say it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -101,7 +101,7 @@ impl ScanInfo {
         self.step(cx);
     }
 
-    /// As [`call`](Self::call): there are no inputs.
+    /// Like [`call`](Self::call), since it has no inputs.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
         (self.first, self.cycle) = (cx.first_scan, cx.cycle);

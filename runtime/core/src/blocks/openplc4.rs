@@ -15,7 +15,7 @@ pub type Ctu<T> = openplc::Ctu<T>;
 pub type CtdRising<T> = openplc::Ctd<T>;
 
 /// `CTD`: counts down on each falling edge of `cd` while `cv > 0`; a `cd` that is FALSE in the first call
-/// is no edge. `q` while `cv <= 0`. While `ld`, `cv` is `pv`: load wins over counting.
+/// is not an edge. `q` while `cv <= 0`. While `ld`, `cv` is `pv`: load wins over counting.
 ///
 /// ```
 /// let mut parts = staunch_runtime::openplc4::Ctd::<i16>::default();
@@ -251,7 +251,7 @@ pins!([] Tp {
 });
 
 /// Whether `delay` has passed since `start`, and how much of it. A negative one is over at once, and is
-/// what has passed of it.
+/// the part of it that has passed.
 #[inline]
 fn measured(start: Time, delay: Time, cx: &Context) -> (bool, Time) {
     let over = start.wrapping_add(delay) <= cx.now();

@@ -65,7 +65,7 @@ impl Big {
         twice
     }
 
-    /// Less `other`, which is no greater.
+    /// Subtracts `other`, which is at most as great.
     fn subtract(&mut self, other: &Self) {
         let mut borrow = 0_i64;
         for (word, other) in self.used_mut().iter_mut().zip(&other.words) {

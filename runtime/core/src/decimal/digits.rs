@@ -54,7 +54,7 @@ impl Digits {
         let (mantissa, power) = parts(value);
         let (odd, power) = (mantissa >> mantissa.trailing_zeros(), power + mantissa.trailing_zeros() as i32);
         // Twice the value is a whole number of the last place: mantissa * 2^(power + 1) * 10^places. From places of 0 down
-        // two reals are further apart than that.
+        // the distance of two reals is greater than that.
         let places = self.count as i32 - self.exponent;
         if places < 0 || power + 1 + places != 0 {
             return false;

@@ -1,4 +1,4 @@
-//! Variables by name: what the table of a program that was emitted with names holds.
+//! Variables by name: the table of a program that was emitted with names.
 
 use crate::text::Unit;
 use crate::{Text, WideText};

@@ -7,18 +7,18 @@ use crate::text::Unit;
 use crate::{Text, Time, crc32};
 use core::fmt;
 
-/// What a record begins with; the digit is the version of its form.
+/// The start of a record; the digit is the version of its form.
 const TITLE: [u8; 4] = *b"STR1";
 
-/// Bytes of a record beside its values.
+/// Bytes of a record in addition to its values.
 pub const RECORD_OVERHEAD: usize = 24;
 
-/// What a firmware writes beside the values. The later of two is the greater.
+/// What a firmware writes in addition to the values. The later of two is the greater.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Stamp {
     /// Counts up with each record, so that of two records the later is known.
     pub sequence: u32,
-    /// The program's clock, in nanoseconds: what `Context::at` was given. Retained timers go on by it.
+    /// The program's clock, in nanoseconds: what `Context::at` was given. Retained timers continue by it.
     pub now: Time,
 }
 

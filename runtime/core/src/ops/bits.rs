@@ -117,7 +117,7 @@ where
     (value & !position) | (value.plus(super::convert(distance)) & position)
 }
 
-/// The bytes of `value` in the other order; what has one byte stays.
+/// The bytes of `value` in reverse order; a value of one byte is unchanged.
 ///
 /// ```
 /// use staunch_runtime::ops::swap_bytes;
@@ -141,7 +141,7 @@ pub fn swap_bytes<T: Scalar>(value: T) -> T {
     T::from_value(swapped).unwrap_or(value)
 }
 
-/// The number of 16 decimal digits, each in four bits; four bits that are no digit count as what they are.
+/// The number of 16 decimal digits, each in four bits; four bits that are not a digit count with their value.
 ///
 /// ```
 /// use staunch_runtime::ops::from_bcd;
@@ -213,7 +213,7 @@ pub fn to_signed_bcd(number: i64, count: i64) -> Result<i64, FaultKind> {
     Ok(to_bcd(magnitude as i64) | sign)
 }
 
-/// As many digits as 64 bits hold beside a sign, at most.
+/// As many digits as 64 bits hold in addition to a sign, at most.
 #[inline]
 fn most_digits(count: i64) -> u32 {
     count.clamp(0, 15) as u32

@@ -125,7 +125,7 @@ pub fn convert_value(value: Value, to: Repr) -> Value {
     }
 }
 
-/// [`trunc`] for a value whose repr is known at run time. What has nothing to truncate (a value
+/// [`trunc`] for a value whose repr is known at run time. A case without anything to truncate (a value
 /// that is not a real, a target that is not an integer) is [converted](convert_value).
 pub fn trunc_value(value: Value, to: Repr) -> Value {
     match value {

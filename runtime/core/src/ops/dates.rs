@@ -1,4 +1,4 @@
-//! Dates and times of day: what they are made of. All are nanoseconds, see [`Time`](crate::Time).
+//! Dates and times of day, and their parts. All are nanoseconds, see [`Time`](crate::Time).
 
 use crate::calendar::{Clock, Day};
 use crate::time::{DAY, MILLISECOND, SECOND};
@@ -19,7 +19,7 @@ pub fn start_of_day(time: Time) -> Time {
     time.checked_sub(past).unwrap_or(time.wrapping_add(DAY - past))
 }
 
-/// Nanoseconds since the midnight before a point in time; so what is added to a time of day goes on at
+/// Nanoseconds since the midnight before a point in time; so a sum with a time of day continues at
 /// midnight from 0.
 #[inline]
 pub fn time_of_day(time: Time) -> Time {

@@ -21,7 +21,7 @@ pub fn index(value: i64, low: i64, high: i64) -> Result<usize, FaultKind> {
     }
 }
 
-/// `value` if it lies in `low..=high`, else [`FaultKind::IndexOutOfRange`]: an index that is checked
+/// `value` if it is in `low..=high`, else [`FaultKind::IndexOutOfRange`]: an index that is checked
 /// before its element is read or written.
 #[inline]
 pub fn checked_index<T: Integer>(low: T, value: T, high: T) -> Result<T, FaultKind> {

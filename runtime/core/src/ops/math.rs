@@ -100,7 +100,7 @@ pub fn nearest<T: Real>(value: T) -> T {
     value.rounded_to_even()
 }
 
-/// What is after the point of the value, with its sign; NaN for infinities and NaN.
+/// The fraction of the value, with its sign; NaN for infinities and NaN.
 ///
 /// ```
 /// use staunch_runtime::ops::fraction;

@@ -19,11 +19,11 @@ pub fn round_to_lint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     let value: f64 = convert(value);
     let moved = if value >= 0.0 { value + 0.5 } else { value - 0.5 };
     let whole = low_or_least(moved);
-    // Only what lies in the middle of two numbers, and what is too large for a fraction, is whole after the move.
+    // Only a number halfway between two numbers, or too large for a fraction, is whole after the move.
     if moved == moved.rounded_to_zero() && moved.is_finite() { whole / 2 * 2 } else { whole }
 }
 
-/// [`round_to_lint`] for a type without a sign: 0 for what is negative, and for NaN.
+/// [`round_to_lint`] for a type without a sign: 0 for negative values and NaN.
 #[inline]
 pub fn round_to_ulint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     let number: f64 = convert(value);
@@ -53,7 +53,7 @@ pub fn trunc_to_lint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     low_or_least(convert(value))
 }
 
-/// `TRUNC` to ULINT: from 2^63 on, what is above that is converted, as the processor has no such conversion.
+/// `TRUNC` to ULINT: from 2^63 on, only the part above 2^63 is converted, as the processor has no unsigned conversion.
 ///
 /// ```
 /// use staunch_runtime::ops::trunc_to_ulint;
@@ -86,7 +86,7 @@ pub fn away_from_zero<T: Real + ConvertTo<f64>>(value: T) -> f64 {
     }
 }
 
-/// `ABS`: the negative of what is less than 0. So -0.0 stays one.
+/// `ABS`: negates a value less than 0. So -0.0 stays -0.0.
 ///
 /// ```
 /// use staunch_runtime::ops::abs_if_below;
@@ -178,7 +178,7 @@ pub fn time_of_seconds<T: Real + ConvertTo<f64>>(value: T) -> Time {
     i64::from(int_or_least(value)) * SECOND + i64::from(int_or_least(fraction))
 }
 
-/// The seconds of a TIME: whole ones, and to them what is less than one.
+/// The seconds of a TIME: whole ones plus the fraction.
 ///
 /// ```
 /// use staunch_runtime::ops::seconds_of;
@@ -206,7 +206,7 @@ pub fn time_times(time: Time, by: f64) -> Time {
     of_timespec(whole.wrapping_add(rest / SECOND), fraction)
 }
 
-/// TIME divided by a number, each part by itself, of which 32 bits are kept.
+/// TIME divided by a number, each component by itself, of which 32 bits are kept.
 ///
 /// ```
 /// use staunch_runtime::ops::time_over;
@@ -222,7 +222,7 @@ pub fn time_over(time: Time, by: f64) -> Time {
     of_timespec(whole, fraction as i32)
 }
 
-/// `LIMIT`: MN for what is not above it, MX for what is not below that, in this order; so NaN gives MN.
+/// `LIMIT`: MN for a value not above MN, MX for one not below MX, in this order; so NaN gives MN.
 ///
 /// ```
 /// use staunch_runtime::ops::limit_low_first;
@@ -240,14 +240,14 @@ fn of_timespec(seconds: i64, nanoseconds: i32) -> Time {
     i64::from(seconds as i32) * SECOND + i64::from(nanoseconds)
 }
 
-/// Toward zero; the least DINT for what a DINT does not hold.
+/// Toward zero; the least DINT for a value that a DINT cannot hold.
 #[inline]
 fn int_or_least(value: f64) -> i32 {
     let holds = value > -2_147_483_649.0 && value < 2_147_483_648.0;
     if holds { value as i32 } else { i32::MIN }
 }
 
-/// Toward zero; the least LINT for what a LINT does not hold.
+/// Toward zero; the least LINT for a value that a LINT cannot hold.
 #[inline]
 fn low_or_least(value: f64) -> i64 {
     let holds = (-9_223_372_036_854_775_808.0..9_223_372_036_854_775_808.0).contains(&value);

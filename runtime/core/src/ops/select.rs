@@ -74,7 +74,7 @@ pub fn sel<T: Scalar>(g: bool, in0: T, in1: T) -> T {
     if g { in1 } else { in0 }
 }
 
-/// `value` if it lies in `min..=max`, else [`FaultKind::SubrangeViolated`].
+/// `value` if it is in `min..=max`, else [`FaultKind::SubrangeViolated`].
 #[inline]
 pub fn in_range<T: Integer>(min: T, value: T, max: T) -> Result<T, FaultKind> {
     if value < min || value > max { Err(FaultKind::SubrangeViolated) } else { Ok(value) }

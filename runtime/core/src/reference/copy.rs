@@ -18,7 +18,7 @@ struct Side {
 }
 
 impl Table<'_> {
-    /// Copies `count` bytes one after the other, each from where `from` leads to where `to` does, which both go on by `step`
+    /// Copies `count` bytes one after the other, each from where `from` leads to where `to` does, which both advance by `step`
     /// after it. A fault leaves those copied that were before it.
     pub fn copy(
         &self,

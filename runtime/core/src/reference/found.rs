@@ -1,4 +1,4 @@
-//! What a reference leads to, looked for where it is expected: emitted Rust compares with the few places where a
+//! The target of a reference, looked for where it is expected: emitted Rust compares with the few places where a
 //! variable of the type is, and asks the table of objects for all else.
 
 use super::{CLASS, ORIGIN, Reference, Shared, Table, View, Wanted, offset};
@@ -9,7 +9,7 @@ use core::cell::Cell;
 /// The bits of a reference that say where it points: without its class.
 const PLACE: u64 = (1 << CLASS) - 1;
 
-/// How far what lies at `distance` bytes from where a reference points is behind the byte of the state at `offset`, in this
+/// How far the place at `distance` bytes from where a reference points is after the byte of the state at `offset`, in this
 /// object: far beyond any array where it is before that, or in another object.
 #[inline]
 pub const fn behind(reference: u64, distance: u64, object: u32, offset: u32) -> u64 {
@@ -72,7 +72,7 @@ pub fn to<P: ?Sized>(object: u32, whole: &impl Shared, part: &P) -> u64 {
     Reference { object, address: ORIGIN + offset(whole, part) as u32 }.bits()
 }
 
-/// What lies at a distance from where a reference points, with the variable that is there if it is one of those that are
+/// The place at a distance from where a reference points, with the variable there if it is one of those that are
 /// expected. Where the table decides, it gets a copy of the table: this is in registers as long as nobody has its address.
 #[derive(Debug)]
 pub struct Found<'m, T, M> {

@@ -45,7 +45,7 @@ pub fn find<T: Any>(whole: &impl Shared, at: usize) -> Option<&T> {
     whole.find(at, TypeId::of::<T>())?.downcast_ref()
 }
 
-/// Where a part of a program's state lies in it.
+/// The offset of a part of a program's state.
 pub fn offset<P: ?Sized>(whole: &impl Shared, part: &P) -> usize {
     let address = |it: *const u8| it.addr();
     address(core::ptr::from_ref(part).cast()).wrapping_sub(address(core::ptr::from_ref(whole).cast()))
@@ -226,7 +226,7 @@ macro_rules! shared {
     };
 }
 
-/// The position in a field of what lies at `at` in the whole, if it does.
+/// The position in a field of the byte at `at` in the whole, if it is in the field.
 #[inline]
 pub fn inside(at: usize, offset: usize, size: usize) -> Option<usize> {
     at.checked_sub(offset).filter(|inside| *inside < size)

@@ -1,16 +1,16 @@
-//! Where the objects are, and which types lie in them.
+//! Where the objects are, and which types they contain.
 //!
 //! A table is words, so that a back end can put it into a program as plain data: the number of objects, the
 //! node of the state, how many words there are; for each object its offset and size, in the order of their
-//! offsets, its size again where all of it is numbers, else 0, its mark and its node; then the nodes. What lies within
+//! offsets, its size again where all of it is numbers, else 0, its mark and its node; then the nodes. Bytes within
 //! those that are numbers may be seen as any number without a look at the nodes. The mark of an object in a pool is the
-//! offset, and 1, of the BOOL that says whether the object is there; other objects, which are always, have 0.
+//! offset, and 1, of the BOOL that says whether the object exists; other objects, which always exist, have 0.
 
 use super::{Memory, ORIGIN, Reference};
 use crate::{FaultKind, Repr, StringType};
 use core::ops::Range;
 
-/// As what an access wants to see memory.
+/// The view of memory that an access asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum View {
     /// A BOOL.
@@ -44,7 +44,7 @@ impl View {
     }
 }
 
-/// What an access means.
+/// The kind of an access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// Bytes at an offset of the state, and how many there are to the end of the variable.
@@ -57,7 +57,7 @@ pub enum Part {
     Characters { text: usize, ty: StringType, index: usize },
 }
 
-/// A byte, and those around it that are seen as it is.
+/// A byte, and those around it that have the same view.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
     pub(super) at: usize,
@@ -80,7 +80,7 @@ pub struct Table<'t> {
     words: &'t [u32],
 }
 
-/// What a table is made of: for the compiler.
+/// The parts of a table, for the compiler.
 pub mod encode {
     use crate::Repr;
 
@@ -166,7 +166,7 @@ impl<'t> Table<'t> {
         Some((self.word(at) as usize, self.word(at + 1) as usize))
     }
 
-    /// Whether the object that a reference names is there: one in a pool may have been deleted.
+    /// Whether the object that a reference names exists: one in a pool may have been deleted.
     pub(super) fn check_is_there(&self, memory: &(impl Memory + ?Sized), bits: u64) -> Result<(), FaultKind> {
         let position = (Reference::from_bits(bits).object as usize).wrapping_sub(1);
         if position >= self.word(0) as usize {
@@ -199,7 +199,7 @@ impl<'t> Table<'t> {
             .find(|number| self.object(*number).is_some_and(|(start, length)| offset + size <= start + length))
     }
 
-    /// What lies at `distance` bytes from where a reference points, as `view` wants to see it.
+    /// The place at `distance` bytes from where a reference points, as `view` wants to see it.
     pub fn part(&self, bits: u64, distance: u64, view: View) -> Result<Part, FaultKind> {
         let (offset, rest) = self.locate(bits, distance)?;
         if matches!(view, View::Number(size) if size as usize <= rest) && self.is_plain(bits) {
@@ -320,7 +320,7 @@ impl<'t> Table<'t> {
         if self.finds(self.state(), offset, wanted) { Ok(offset) } else { Err(FaultKind::ForbiddenView) }
     }
 
-    /// Whether a variable of this type lies at an offset of what is `found`.
+    /// Whether a variable of this type is at an offset in what was `found`.
     fn finds(&self, mut found: Option<Found>, offset: usize, wanted: Wanted) -> bool {
         while let Some(at) = found {
             let index = offset - at.start;

@@ -1,7 +1,7 @@
 //! Text of values, and values of text.
 //!
 //! Text is read as CODESYS and TwinCAT document it: spaces before a value are passed over, and so is what
-//! follows a number; what is no value gives 0.
+//! follows a number; text that is not a value gives 0.
 
 use super::{Destination, characters};
 use crate::decimal::{self, Format, LREAL, REAL};
@@ -195,7 +195,7 @@ pub fn to_lint_or_0(text: &[u8]) -> i64 {
     i64::try_from(if is_negative { -magnitude } else { magnitude }).unwrap_or(0)
 }
 
-/// The same of a ULINT: 0 also for what is below 0.
+/// The same for a ULINT: 0 also for a negative number.
 ///
 /// ```
 /// use staunch_runtime::text::to_ulint_or_0;
@@ -209,7 +209,7 @@ pub fn to_ulint_or_0(text: &[u8]) -> u64 {
     if is_negative { 0 } else { whole_or_0(digits) }
 }
 
-/// The nearest REAL; infinity beyond the greatest, 0 for what is no number.
+/// The nearest REAL; infinity beyond the greatest, 0 for text that is not a number.
 ///
 /// ```
 /// use staunch_runtime::text::to_real;
@@ -221,7 +221,7 @@ pub fn to_real(text: &[u8]) -> f32 {
     number(text, REAL) as f32
 }
 
-/// The nearest LREAL; infinity beyond the greatest, 0 for what is no number.
+/// The nearest LREAL; infinity beyond the greatest, 0 for text that is not a number.
 #[inline]
 pub fn to_lreal(text: &[u8]) -> f64 {
     number(text, LREAL)
@@ -337,7 +337,7 @@ impl Significant {
     /// written with still more digits, may go to either.
     const MOST: u32 = 37;
 
-    /// The nearest real. Of what is not kept, that it is there decides: by however little it is more than the digits that are.
+    /// The nearest real. Digits that are not kept decide only by their existence: they make the number slightly greater than the kept ones.
     fn nearest(&self, format: Format) -> f64 {
         match self.is_more {
             true => decimal::nearest(self.number * 10 + 1, self.exponent.saturating_sub(1), format),

@@ -272,7 +272,7 @@ pub fn to_bool_word(text: &[u8]) -> bool {
     text == b"1" || text.eq_ignore_ascii_case(b"TRUE")
 }
 
-/// The number that is read from the end to the start. What is not a digit is passed over; a character from `.` on in
+/// The number that is read from the end to the start. Other characters than digits are passed over; a character from `.` on in
 /// ASCII, so a letter too, drops what has been read. At most 20 digits count. A `-` is one at the start alone.
 ///
 /// ```

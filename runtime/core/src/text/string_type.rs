@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// The type of a string: what it is made of, and how much of that it holds.
+/// The type of a string: the kind of its units, and its capacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct StringType {
     /// Whether it is a WSTRING, of UTF-16 code units; a STRING is of bytes.

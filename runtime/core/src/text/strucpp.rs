@@ -18,7 +18,7 @@ pub fn right_or_all<U: Unit>(text: &[U], count: i64, out: &mut Destination<'_, U
     right(text, without_sign(count), out);
 }
 
-/// `MID`: nothing for a position that is not in the text; all that follows for a negative count.
+/// `MID`: nothing for a position outside the text; everything that follows for a negative count.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::mid_within};
@@ -122,7 +122,7 @@ pub fn to_ulint_front(text: &[u8]) -> u64 {
     number.map_or(u64::MAX, |it| if negative { it.wrapping_neg() } else { it })
 }
 
-/// Whether a minus stands before the number, and its digits; spaces before are passed over.
+/// Whether the number has a minus before it, and its digits; spaces before are passed over.
 fn front(text: &[u8]) -> (bool, &[u8]) {
     let text = text.trim_ascii_start();
     let (negative, text) = match text.split_first() {

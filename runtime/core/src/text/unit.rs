@@ -1,4 +1,4 @@
-//! What strings are made of, and what it means as text.
+//! The units of strings, and their meaning as text.
 //!
 //! A STRING is UTF-8, as sources are; a byte that belongs to no character of that is the one that has its number, as
 //! in ISO 8859-1, which `'$E9'` is written by. A WSTRING is UTF-16.
@@ -10,13 +10,13 @@ pub trait Unit: Copy + Ord + fmt::Debug + 'static {
     const ZERO: Self;
     /// In bytes.
     const SIZE: usize;
-    /// A byte of it, as it lies in memory.
+    /// A byte of it, as it is in memory.
     fn byte(self, at: usize) -> u8;
     #[must_use]
     fn with_byte(self, at: usize, byte: u8) -> Self;
     /// As a literal.
     fn debug(units: &[Self], f: &mut fmt::Formatter<'_>) -> fmt::Result;
-    /// As text; what is none shows as U+FFFD.
+    /// As text; invalid units show as U+FFFD.
     fn display(units: &[Self], f: &mut fmt::Formatter<'_>) -> fmt::Result;
 }
 

@@ -84,13 +84,13 @@ macro_rules! strips {
     };
 }
 
-/// The turns of a loop that takes `N` at once. What it does not use the context gets back, however it ends.
+/// The turns of a loop that takes `N` at once. The context gets back the unused ones, however it ends.
 #[derive(Debug)]
 pub struct Strips<'a, const N: u64> {
     cx: &'a Context,
-    /// What the scan has left besides the strip.
+    /// The turns that the scan has left besides the strip.
     left: u64,
-    /// What is left of the strip.
+    /// The turns that are left of the strip.
     strip: u64,
 }
 

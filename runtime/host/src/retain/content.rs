@@ -1,4 +1,4 @@
-//! What was recovered of a file, and why nothing was.
+//! What was recovered from a file, or why nothing was.
 
 use staunch_runtime::Time;
 
@@ -46,7 +46,7 @@ pub(super) struct Found {
     pub values: Vec<u8>,
     /// The fault that ended a run, since which none has ended well; empty without one.
     pub fault: String,
-    /// The other slot holds something that is no whole record: its writing did not end, or it was damaged.
+    /// The other slot holds an incomplete record: its writing did not end, or it was damaged.
     pub other_is_broken: bool,
 }
 

@@ -27,12 +27,12 @@ const FAULT: usize = 232;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Named {
     pub path: String,
-    /// All that decides what the bytes mean.
+    /// Everything that decides the meaning of the bytes.
     pub ty: String,
     pub size: usize,
 }
 
-/// What a file of one program is like: its head, and where its slots are.
+/// The layout of a program's file: its head, and where its slots are.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     head: String,
@@ -43,14 +43,14 @@ pub(super) struct Layout {
     fault: usize,
 }
 
-/// What a slot holds.
+/// The contents of a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Record<'a> {
     /// Counts up with each record that is written, so that the later one is known.
     pub sequence: u64,
     pub clock: Time,
     pub values: &'a [u8],
-    /// Why the run ended; empty where it did not fault. What is too long loses its beginning: the end has the
+    /// Why the run ended; empty where it did not fault. A text that is too long loses its beginning: the end has the
     /// kind and the line.
     pub fault: &'a str,
 }
@@ -149,14 +149,14 @@ pub(super) fn recover(file: &[u8]) -> Result<Content, Refusal> {
 
 fn recover_slots(file: &[u8], version: &str) -> Result<Content, Refusal> {
     let (layout, programs, variables) =
-        head(file, version).ok_or(Refusal::Damaged("its head's checksum does not match"))?;
+        head(file, version).ok_or(Refusal::Damaged("the checksum of its header does not match"))?;
     let slots = Slot::BOTH.map(|slot| slot_at(file, &layout, slot));
     let [first, second] = slots.map(|it| decode_slot(&layout, it?));
     let (slot, record) = match (first, second) {
         (Some(first), Some(second)) if second.sequence > first.sequence => (Slot::Second, second),
         (Some(first), _) => (Slot::First, first),
         (None, Some(second)) => (Slot::Second, second),
-        (None, None) => return Err(Refusal::Damaged("neither of its two states has the checksum that it should")),
+        (None, None) => return Err(Refusal::Damaged("neither of its two states has the right checksum")),
     };
     let other = slots[usize::from(slot == Slot::First)];
     let other_is_broken = other.is_none_or(|it| it.iter().any(|byte| *byte != 0) && decode_slot(&layout, it).is_none());

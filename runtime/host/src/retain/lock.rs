@@ -21,7 +21,7 @@ pub(super) fn take(path: &Path) -> io::Result<Option<File>> {
 
 #[cfg(any(unix, windows))]
 const TAKEN_BY_OTHERS: &str =
-    "another process keeps its retained variables there: end it, or give this one a file of its own";
+    "another process keeps its retained variables there: end it, or give this one its own file";
 
 /// Locks a file until it is closed.
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Where the bytes of retained variables go: a file, and a new one beside it that can take its place.
+//! Where the bytes of retained variables go: a file, and a new one next to it that can replace it.
 
 use super::lock;
 use crate::replace::followed;
@@ -62,14 +62,14 @@ pub(super) struct Disk {
 }
 
 impl Disk {
-    /// The disk, and the first `limit` bytes of the file if there is one. What is read is what is written
+    /// The disk, and the first `limit` bytes of the file if there is one. The file that is read is also the one that is written
     /// later, whatever happens to the name.
     ///
     /// A symbolic link stays: what it leads to is read and written.
     pub fn open(path: &Path, limit: u64) -> io::Result<(Self, Option<Vec<u8>>)> {
         let path = &followed(path)?;
         if std::fs::metadata(path).is_ok_and(|it| !it.is_file()) {
-            return Err(io::Error::other("retained variables need a file, and it is something else"));
+            return Err(io::Error::other("retained variables need a file, but this is something else"));
         }
         let lock = lock::take(path)?;
         let mut name: OsString = path.file_name().unwrap_or_default().to_owned();

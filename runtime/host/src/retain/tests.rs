@@ -61,8 +61,8 @@ fn an_edited_program_keeps_what_still_fits() {
     assert_eq!(
         load(&edited, &path, &mut machine).unwrap().notes,
         [
-            "dropped the retained value of `Globals.total`: it was DINT, and is REAL now",
-            "dropped the retained value of `main.mixer.count`: the program has no such variable",
+            "dropped the retained value of `Globals.total`: it was DINT, and is now REAL",
+            "dropped the retained value of `main.mixer.count`: the program does not have this variable",
         ]
     );
     assert!(machine.state.iter().all(|it| *it == 0));
@@ -105,8 +105,8 @@ fn a_value_stays_only_where_its_type_means_the_same() {
     assert_eq!(edited("enum", &color("Red=0\tGreen=1"), &color("Green=0\tRed=1")), dropped("it was another Color"));
     let int = |range: &str| format!("INT\t0\tvar\tretain\t-\t{range}");
     assert!(edited("range-same", &int("0..100"), &int("0..100")).is_empty());
-    assert_eq!(edited("range", &int("0..100"), &int("0..10")), dropped("it was INT(0..100), and is INT(0..10) now"));
-    assert_eq!(edited("no-range", &int("-"), &int("0..10")), dropped("it was INT, and is INT(0..10) now"));
+    assert_eq!(edited("range", &int("0..100"), &int("0..10")), dropped("it was INT(0..100), and is now INT(0..10)"));
+    assert_eq!(edited("no-range", &int("-"), &int("0..10")), dropped("it was INT, and is now INT(0..10)"));
     let counter = |number: &str| {
         let pins = format!("field\tPV\t{number}\t0\tinput\t-\t-\t-\nfield\tCV\t{number}\t2\toutput\t-\t-\t-");
         format!("block\t7\tCTD\t4\n{pins}\nblock:7\t0\tvar\tretain\t-\t-")
@@ -127,10 +127,10 @@ fn a_variable_that_is_no_longer_retained_is_told_from_one_that_is_gone() {
     );
     let point = "struct\t0\tPoint\t2\tstructure\nfield\tx\tINT\t0\tmember\t-\t-\t-\n\
                  struct:0\t0\tvar\tretain\t-\t-";
-    assert_eq!(edited("point", int, point), ["dropped the retained value of `main.v`: it was INT, and is Point now"]);
+    assert_eq!(edited("point", int, point), ["dropped the retained value of `main.v`: it was INT, and is now Point"]);
     assert_eq!(
         edited("no-point", point, int),
-        ["dropped the retained value of `main.v.x`: the program has no such variable"]
+        ["dropped the retained value of `main.v.x`: the program does not have this variable"]
     );
 }
 
@@ -145,8 +145,8 @@ fn a_file_that_cannot_be_trusted_is_refused() {
     };
     let mut flipped = good.clone();
     flipped[40] ^= 1;
-    assert!(error(&flipped, &map()).contains("it is damaged: its head's checksum does not match; move it away"));
-    assert!(error(&good[..4100], &map()).contains("it is damaged: neither of its two states has the checksum"));
+    assert!(error(&flipped, &map()).contains("it is damaged: the checksum of its header does not match; move it away"));
+    assert!(error(&good[..4100], &map()).contains("it is damaged: neither of its two states has the right checksum"));
     assert!(
         error(b"staunch retained variables 1\n", &map()).contains("its format is version 1, and this Staunch reads")
     );
@@ -171,7 +171,7 @@ fn a_state_that_was_cut_off_gives_way_to_the_one_before() {
     std::fs::write(&path, bytes).unwrap();
     let mut machine = Bytes::new(&map());
     let notes = load(&map(), &path, &mut machine).unwrap().notes;
-    assert!(notes.len() == 1 && notes[0].starts_with("one of its two states is not whole"), "{notes:?}");
+    assert!(notes.len() == 1 && notes[0].starts_with("one of its two states is incomplete"), "{notes:?}");
     assert_eq!(machine.state[offset_of("total")], 1);
 }
 
@@ -210,13 +210,13 @@ fn a_forged_file_is_refused_or_made_into_values() {
         ("Globals.total\tDINT\t2a000000000000000000", Some("it was another DINT")),
         ("Globals.total\tDINT\tzz000000", Some("it was another DINT")),
         ("Globals.total\tDINT\t", Some("it was another DINT")),
-        ("Globals.total\tSTRING[65535]\t2a000000", Some("it was STRING[65535], and is DINT now")),
-        ("Globals.total[9223372036854775807]\tDINT\t2a000000", Some("the program has no such variable")),
-        ("main.m[-1,99999999999999999999]\tINT\t2a00", Some("the program has no such variable")),
+        ("Globals.total\tSTRING[65535]\t2a000000", Some("it was STRING[65535], and is now DINT")),
+        ("Globals.total[9223372036854775807]\tDINT\t2a000000", Some("the program does not have this variable")),
+        ("main.m[-1,99999999999999999999]\tINT\t2a00", Some("the program does not have this variable")),
         ("main.name\tSTRING[4]\tffff01020304", Some("but does not retain it")),
         ("%IX0.0\tBOOL\tff", Some("but does not retain it")),
         (&long, None),
-        (&format!("{long}\tDINT\t00"), Some("the program has no such variable")),
+        (&format!("{long}\tDINT\t00"), Some("the program does not have this variable")),
     ] {
         let (loaded, state) = forged("forged", &format!("{head}{line}\n"));
         let notes = loaded.unwrap().notes;

@@ -65,7 +65,7 @@ struct Parcel {
     generation: u64,
     clock: Time,
     values: Vec<u8>,
-    /// Why the run ended, or the one before while this one goes on.
+    /// Why the run ended, or the one before while this one continues.
     fault: String,
 }
 
@@ -189,14 +189,14 @@ impl<S: Storage> Desk<S> {
                 }
             }
             Err(error) if !failed_before => {
-                tell(&format!("retained variables cannot be saved: {error}; it is tried again and again"));
+                tell(&format!("retained variables cannot be saved: {error}; trying again"));
             }
             Err(_) => {}
         }
         if self.pace.is_late(took) && !std::mem::replace(&mut self.was_late, true) {
             let took = took.as_millis();
             tell(&format!(
-                "the disk took {took} ms to save retained variables: changes are saved later than asked for"
+                "the disk took {took} ms to save retained variables: changes are saved later than requested"
             ));
         }
         result

@@ -21,7 +21,7 @@ const LONG: [Time; 12] = [
     864_000 * SECOND,
 ];
 
-/// The round times from `start` to `end`, at least `distance` apart, with their labels.
+/// The round times from `start` to `end`, at least `distance` from each other, with their labels.
 pub(super) fn ticks(start: Time, end: Time, distance: Time) -> Vec<(Time, String)> {
     let step = round(distance);
     let first = start.div_euclid(step) * step + if start.rem_euclid(step) == 0 { 0 } else { step };

@@ -28,7 +28,7 @@ pub(crate) struct Table {
 struct Kept {
     scan: u64,
     time: Time,
-    /// The values of the columns, as they lie in the state, one after the other.
+    /// The values of the columns, as they are in the state, one after the other.
     bytes: Vec<u8>,
 }
 

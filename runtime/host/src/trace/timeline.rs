@@ -1,8 +1,8 @@
-//! The values of a run over time, in bounded memory: what the pictures are drawn of.
+//! The values of a run over time, in bounded memory: the data of the pictures.
 //!
 //! A lane keeps every change until there are too many. Then the changes in each cell of a grid of times
 //! become one piece, which knows how low and high the values were; the grid gets coarser as the run
-//! goes on. So a pulse of one scan is still seen after a million scans.
+//! continues. So a pulse of one scan is still seen after a million scans.
 
 use super::{Row, Subject};
 use crate::value;
@@ -121,7 +121,7 @@ pub(super) struct Timeline {
     before: Time,
     cycle: Time,
     pub rows: u64,
-    /// `(time, scan)` of the first row, and of those after which time and scans go on at another pace.
+    /// `(time, scan)` of the first row, and of those after which time and scans advance at another pace.
     pub scans: Vec<(Time, u64)>,
     /// The last row's distance from the one before, and its scan.
     pace: Option<(Time, u64)>,

@@ -29,7 +29,7 @@ impl Writer {
             Ty::Array(_) | Ty::Record(_) | Ty::Union(_) => self.leaf(ty),
             Ty::Pointer(to) => self.reference(to, depth),
             Ty::Interface => self.implementer(depth),
-            Ty::Instance(_) | Ty::Standard(_) => unreachable!("an instance is no value"),
+            Ty::Instance(_) | Ty::Standard(_) => unreachable!("an instance is not a value"),
         }
     }
 

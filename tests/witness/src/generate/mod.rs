@@ -370,7 +370,7 @@ impl Writer {
         self.own.actions.push("Act".to_owned());
     }
 
-    /// A PROGRAM that Main calls by its name: for its body it is an instance that is there.
+    /// A PROGRAM that Main calls by its name: for its body it is an existing instance.
     fn sub_program(&mut self) {
         self.blank();
         self.line("PROGRAM Sub");
@@ -491,7 +491,7 @@ impl Writer {
         self.whiles = 0;
     }
 
-    /// Writes new parameters, whose names begin with `prefix`. Those of a call live as long as it goes on.
+    /// Writes new parameters, whose names begin with `prefix`. Those of a call exist until it ends.
     fn parameters(&mut self, prefix: &str, of_call: bool) -> Vec<Parameter> {
         let parameters = self.new_parameters(prefix, of_call);
         self.declare_sections(&parameters, true);
@@ -515,7 +515,7 @@ impl Writer {
         parameters
     }
 
-    /// Parameters of what may be overridden: without initial values, which are no part of what is inherited.
+    /// Parameters of a routine that may be overridden: without initial values, which are not inherited.
     fn declare_parameters(&mut self, parameters: &[Parameter]) {
         self.declare_sections(parameters, false);
     }

@@ -11,7 +11,7 @@ pub struct Variable {
     pub writable: bool,
     /// Whether it has a direct address that others may overlap.
     pub located: bool,
-    /// Whether it is there from scan to scan, so that references may be kept of it.
+    /// Whether it exists from scan to scan, so that references may be kept of it.
     pub lasts: bool,
 }
 

@@ -312,7 +312,7 @@ pub fn pins(block: usize) -> Vec<(String, Ty, bool)> {
 /// Blocks that stand for themselves: not those of an option, or with a variable outside of them.
 pub fn standard_blocks() -> Vec<usize> {
     let fits = |it: &BlockInfo| {
-        // What tests advance time with is no part of the language.
+        // The operation that advances time in tests is not part of the language.
         let is_hidden = it.name.starts_with("__");
         !is_hidden
             && it.facts.option.is_none()

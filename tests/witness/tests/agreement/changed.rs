@@ -38,7 +38,7 @@ fn changed_cases() {
     assert!(!chosen.is_empty() || same > other, "only {same} of {} were compared", same + other);
 }
 
-/// Whether a case has a run, and is no vendor's file.
+/// Whether a case has a run, and is not a vendor's file.
 fn is_text(case: &Case) -> bool {
     case.pins.contains(&Pin::Scan) && !case.name.starts_with("vendor/")
 }
@@ -95,7 +95,7 @@ fn with_first(sources: &Sources, text: &str) -> Sources {
     changed
 }
 
-/// What stands in for another of its row.
+/// Words that can replace each other, a row each.
 const ROWS: [&[&str]; 9] = [
     &["+", "-", "*", "/", "MOD", "**"],
     &["<", "<=", ">", ">=", "=", "<>"],

@@ -158,7 +158,7 @@ fn differences(name: &str, scans: &[Scan], other_name: &str, others: &[Scan]) ->
 }
 
 /// The first variable in which two scans differ. The second need not have all variables: constants and temporaries of the
-/// front end are no program's.
+/// front end belong to no program.
 pub fn difference(number: u32, name: &str, scan: &Scan, other_name: &str, other: &Scan) -> Option<String> {
     let values: HashMap<String, &str> =
         other.variables.iter().map(|it| (it.0.to_ascii_uppercase(), it.1.as_str())).collect();

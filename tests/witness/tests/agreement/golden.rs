@@ -46,7 +46,7 @@ fn golden_cases() {
 /// stimulus is none for the sources.
 pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     let mut settings = case.settings();
-    // What hangs ends all the same.
+    // A program that hangs still ends.
     settings.loop_budget.get_or_insert(TURNS);
     let Some(program) = staunch_frontend::compile(sources, &settings.options).program else {
         return Ok(Verdict::Rejected("it is refused".to_owned()));
@@ -121,7 +121,7 @@ fn have_any_in_common(a: &Scan, b: &Scan) -> bool {
     a.variables.iter().any(|it| b.variables.iter().any(|other| it.0.eq_ignore_ascii_case(&other.0)))
 }
 
-/// What lies at addresses has names of the executors' own.
+/// Variables at addresses have the executors' own names.
 fn add_addresses(machine: &Machine<'_>, theirs: &Scan, ours: &mut Scan) {
     let sizes = [("Bool", 0), ("U8", 1), ("U16", 2), ("U32", 4), ("U64", 8)];
     for (path, value) in &theirs.variables {

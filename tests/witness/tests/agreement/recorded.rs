@@ -62,7 +62,7 @@ struct Recorder<'p> {
     interpreter: Interpreter<'p>,
     domain: Domain,
     leaves: Leaves<'p>,
-    /// Whether the program is told which scan is the first.
+    /// Whether the program gets which scan is the first.
     prescan: bool,
     program: &'p Program,
     events: Vec<Event>,

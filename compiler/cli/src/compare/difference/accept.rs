@@ -70,10 +70,10 @@ impl Accepted {
 
 impl Line {
     fn parse(line: &str, number: usize) -> Result<Self, String> {
-        const SHAPE: &str = "a line is `counter trap: reason`, as `parts 2: nobody reads the count past 50`";
-        let (what, reason) = line.split_once(':').ok_or_else(|| format!("there is no reason; {SHAPE}"))?;
+        const SHAPE: &str = "expected `counter trap: reason`, as `parts 2: nobody reads the count past 50`";
+        let (what, reason) = line.split_once(':').ok_or_else(|| format!("the reason is missing; {SHAPE}"))?;
         if reason.trim().is_empty() {
-            return Err(format!("there is no reason; {SHAPE}"));
+            return Err(format!("the reason is missing; {SHAPE}"));
         }
         let mut words = what.split_whitespace();
         let (Some(subject), Some(pitfall), None) = (words.next(), words.next(), words.next()) else {
@@ -83,7 +83,7 @@ impl Line {
         let what = match (kind, pitfall.parse()) {
             (Some(kind), _) => What::Kind(kind),
             (None, Ok(number)) => What::Trap(number),
-            (None, Err(_)) => return Err(format!("`{pitfall}` is no trap's number; {SHAPE}")),
+            (None, Err(_)) => return Err(format!("`{pitfall}` is not the number of a trap; {SHAPE}")),
         };
         Ok(Self { number, subject: subject.to_owned(), what })
     }
@@ -130,7 +130,7 @@ mod tests {
 
     #[test]
     fn a_reason_is_asked_for() {
-        assert!(Accepted::parse("parts 2", "a").unwrap_err().1.starts_with("there is no reason"));
-        assert!(Accepted::parse("parts two: why", "a").unwrap_err().1.starts_with("`two` is no trap's number"));
+        assert!(Accepted::parse("parts 2", "a").unwrap_err().1.starts_with("the reason is missing"));
+        assert!(Accepted::parse("parts two: why", "a").unwrap_err().1.starts_with("`two` is not the number of a trap"));
     }
 }

@@ -1,4 +1,4 @@
-//! What a move can change beside counters: timers, one-shots and latches, what is computed in other types,
+//! What a move can change other than counters: timers, one-shots and latches, values computed in other types,
 //! what an event keeps on one system alone, and faults.
 
 use super::kind::Kind;
@@ -41,7 +41,7 @@ pub fn location(program: &Program, (owner, field): Declared) -> Location {
     program.structure(owner).fields[field.index()].location
 }
 
-/// The variables that are assigned what the two systems compute in other types or where bits lie apart, or where a condition is.
+/// The variables that are assigned values which the two systems compute in other types, or from bits at other places, or under such a condition.
 pub fn computed_apart(pair: &Pair) -> Vec<Candidate> {
     let targets = apart::targets(pair.sides.each_ref().map(|it| &it.program));
     let variables = pair.matched(|it| it.role == Role::Variable).into_iter();
@@ -49,7 +49,7 @@ pub fn computed_apart(pair: &Pair) -> Vec<Candidate> {
         let declared = [0, 1].map(|side: usize| pair.scalar(side, variable[side]).field);
         let found = (0..2).find_map(|side| Some((side, targets[side].get(&declared[side]?)?)));
         let (side, found) = found?;
-        // What is held in one type is stored alike, but for the bits around it.
+        // A value of one type is stored in the same way, except for the bits around it.
         let reprs = [0, 1].map(|side| pair.sides[side].program.repr(pair.scalar(side, variable[side]).ty));
         let is_located = |(owner, field): Declared| {
             pair.sides[side].program.structure(owner).fields[field.index()].address.is_some()

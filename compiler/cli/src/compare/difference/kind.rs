@@ -55,13 +55,13 @@ impl Kind {
     /// Why it differs, where no trap says so; of one program on both systems, or of two.
     pub const fn reason(self, is_one_program: bool) -> &'static str {
         match self {
-            Self::Counter => "what it is given differs, or no trap explains it",
-            Self::Timer | Self::OneShot | Self::Latch => "what the block is given differs",
-            Self::Width => "the two systems compute or hold it in other types",
-            Self::Address => "bits at an address are shared on one of the two systems alone",
-            Self::Retention => "one system keeps it",
-            Self::Fault => "one system faults here, and the other goes on",
-            Self::Variable if is_one_program => "no trap explains it: the two systems run the program otherwise",
+            Self::Counter => "its inputs differ, or no trap explains it",
+            Self::Timer | Self::OneShot | Self::Latch => "the inputs of the block differ",
+            Self::Width => "the two systems compute or store it in different types",
+            Self::Address => "only one of the two systems shares the bits at an address",
+            Self::Retention => "only one system keeps it",
+            Self::Fault => "one system faults here, and the other continues",
+            Self::Variable if is_one_program => "no trap explains it: the two systems run the program differently",
             Self::Variable => "no trap explains it: the two programs are not the same",
             Self::Output => "it is an output that follows from an accepted finding",
         }

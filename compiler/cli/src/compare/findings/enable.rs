@@ -29,7 +29,7 @@ pub fn reason(pair: &Pair, row: &Row, variable: Matched) -> Option<String> {
         let structure = program.structure(enable.0);
         let system = pair.sides[side].dialect.name();
         let field = &structure.fields[enable.1.index()].name;
-        Some(format!("`{field}` stops the body of `{}` on {system} alone, where a call gives FALSE", structure.name))
+        Some(format!("`{field}` stops the body of `{}` only on {system}, where a call gives FALSE", structure.name))
     })
 }
 

@@ -116,8 +116,8 @@ impl Findings {
                 Verdict::Impossible(why) => Some(format!("is impossible: {why}")),
                 Verdict::Reachable(_) | Verdict::Undecided => None,
             });
-            let why = why.unwrap_or_else(|| "is not found".to_owned());
-            format!("{} is accepted, and {why}", accepted.describe(line))
+            let why = why.unwrap_or_else(|| "does not exist".to_owned());
+            format!("{} is accepted, but {why}", accepted.describe(line))
         };
         accepted.lines.iter().filter(stale).map(sentence).collect()
     }
@@ -317,8 +317,8 @@ mod tests {
         assert_eq!(
             findings.stale(&accepted),
             [
-                "a.txt:1: trap 2 of `parts` is accepted, and is impossible: it does not count up",
-                "a.txt:2: trap 3 of `parts` is accepted, and is not found"
+                "a.txt:1: trap 2 of `parts` is accepted, but is impossible: it does not count up",
+                "a.txt:2: trap 3 of `parts` is accepted, but does not exist"
             ]
         );
     }

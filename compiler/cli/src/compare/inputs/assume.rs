@@ -76,7 +76,8 @@ impl Assumptions {
         match words.as_slice() {
             [no, event] if no.eq_ignore_ascii_case("no") => {
                 let found = Event::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(event));
-                self.never.push(found.ok_or_else(|| format!("`{event}` is no event; they are restart, run, reset"))?);
+                self.never
+                    .push(found.ok_or_else(|| format!("`{event}` is not an event; expected restart, run or reset"))?);
             }
             // That it is named makes it an input.
             [input, name] if input.eq_ignore_ascii_case("input") => {
@@ -90,7 +91,7 @@ impl Assumptions {
                 let [first, last] = [low, high].map(|it| parser.limit(at, it));
                 let (first, last) = (first?, last?);
                 if order(first, last).is_none_or(Ordering::is_gt) {
-                    return Err(format!("no value lies in {low}..{high}"));
+                    return Err(format!("no value is in {low}..{high}"));
                 }
                 self.ranges.push((at, first, last));
             }
@@ -102,7 +103,7 @@ impl Assumptions {
                     && ["scan", "scans"].iter().any(|it| it.eq_ignore_ascii_case(scans)) =>
             {
                 let count = count.parse::<u8>().ok().filter(|it| *it > 0);
-                let count = count.ok_or_else(|| format!("`{}` is no number of scans from 1 to 255", words[4]))?;
+                let count = count.ok_or_else(|| format!("`{}` is not a number of scans from 1 to 255", words[4]))?;
                 self.holds.push((parser.input(name)?, count));
             }
             _ => {
@@ -185,7 +186,7 @@ mod tests {
 
     fn parsed(text: &str) -> Result<Assumptions, (usize, String)> {
         fn wrong(it: &str) -> String {
-            format!("`{it}` is no value")
+            format!("`{it}` is not a value")
         }
         let truth = |it: &str| it.parse().map(Value::Bool).map_err(|_| wrong(it));
         let count = |it: &str| it.parse().map(Value::I16).map_err(|_| wrong(it));
@@ -258,7 +259,7 @@ mod tests {
     fn a_range_lies_within_the_subrange() {
         assert!(parsed("Target -10..900").is_ok());
         let (line, text) = parsed("no run\nTarget 5..901").unwrap_err();
-        assert_eq!((line, text.as_str()), (2, "`Target` is declared as -10..900, and 901 is not within that"));
+        assert_eq!((line, text.as_str()), (2, "`Target` is declared as -10..900, but 901 is not in that range"));
     }
 
     #[test]
@@ -266,15 +267,15 @@ mod tests {
         let wrong = |text: &str| parsed(text).unwrap_err();
         assert_eq!(
             wrong("Start\nMotor 1..3"),
-            (2, "`Motor` is no input; they are Start, Stop, Target, Level".to_owned())
+            (2, "`Motor` is not an input; the inputs are Start, Stop, Target, Level".to_owned())
         );
-        assert_eq!(wrong("Target 5..1").1, "no value lies in 5..1");
-        assert_eq!(wrong("Start for at least 0 scans").1, "`0` is no number of scans from 1 to 255");
+        assert_eq!(wrong("Target 5..1").1, "no value is in 5..1");
+        assert_eq!(wrong("Start for at least 0 scans").1, "`0` is not a number of scans from 1 to 255");
         assert!(wrong("Start Stop").1.starts_with("`Stop` is not expected here; a line is "));
         assert_eq!(wrong("not (Start").1, "a `)` is missing");
-        assert_eq!(wrong("Target > x").1, "Target: `x` is no value");
-        assert_eq!(wrong("Target > level").1, "`level` is an input, too: `Target` is compared with a value");
-        assert_eq!(wrong("Target 0.5..2").1, "Target: `0.5` is no value");
+        assert_eq!(wrong("Target > x").1, "Target: `x` is not a value");
+        assert_eq!(wrong("Target > level").1, "`level` is also an input, but `Target` must be compared with a value");
+        assert_eq!(wrong("Target 0.5..2").1, "Target: `0.5` is not a value");
         assert_eq!(wrong("Start ! Stop").1, "`!` is not expected");
     }
 }

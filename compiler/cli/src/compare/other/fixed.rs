@@ -16,7 +16,7 @@ pub fn check(sources: &Sources, dialect: Dialect, option: &str, qualified: bool)
         for (pragma, named) in pragmas(&file).filter(|it| it.1 != dialect) {
             let _ = writeln!(
                 text,
-                "{}:{}: the file is of the dialect `{}`, and {option} says `{}`",
+                "{}:{}: the dialect of the file is `{}`, but {option} says `{}`",
                 source.path,
                 line(pragma),
                 named.name(),
@@ -30,7 +30,7 @@ pub fn check(sources: &Sources, dialect: Dialect, option: &str, qualified: bool)
             let (family, block) = (name[0].text.to_ascii_uppercase(), name[1].text);
             let _ = writeln!(
                 text,
-                "{}:{}: `{family}.{block}` is {family}'s on every system: a move does not change it. Write `{block}`, \
+                "{}:{}: `{family}.{block}` belongs to {family} on every system, so a move does not change it. Write `{block}`, \
                  or give the program for the other system with --against",
                 source.path,
                 line(name[0])

@@ -20,7 +20,7 @@ pub struct Rewritten {
     pub sources: Sources,
     /// Lines before and after.
     pub notes: Vec<(String, String)>,
-    /// For each file, what was replaced, in order; no replacement lies in another.
+    /// For each file, what was replaced, in order; no replacement is inside another.
     edits: Vec<Vec<Edit>>,
 }
 

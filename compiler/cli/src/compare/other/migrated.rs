@@ -59,8 +59,8 @@ fn ladder(text: &str) -> Option<String> {
     let names = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
     let lines = if lines.len() == 1 { format!("line {}", lines[0]) } else { format!("lines {}", lines.join(", ")) };
     Some(format!(
-        "Studio 5000 has {names} in ladder only: make a rung of each ({lines}), with what is given as `RungIn` as its condition. It takes \
-         the other statements as Structured Text, also CTUD with an FBD_COUNTER; the variables are tags there"
+        "Studio 5000 has {names} only in ladder: make a rung of each ({lines}), with the argument of `RungIn` as its condition. It takes \
+         the other statements as Structured Text, including CTUD with an FBD_COUNTER; there the variables are tags"
     ))
 }
 

@@ -1,5 +1,5 @@
-//! What a program uses and the other system has not, although Staunch runs it there: the comparison
-//! goes on, and the user is told at each place.
+//! What a program uses and the other system does not have, although Staunch runs it there: the comparison
+//! continues, and each place is reported.
 
 use staunch_frontend::{Dialect, Sources};
 use staunch_ir::{Elementary, FieldId, Location, Program, Projection, Root, Section, StructId, Type, Variable};
@@ -93,7 +93,7 @@ fn lacks(program: &Program, ty: Type, to: Dialect) -> Option<(String, &'static s
             (to == Dialect::Logix).then(|| ("enumerations".to_owned(), "a DINT, and a constant for each name"))
         }
         Type::Subrange(..) => {
-            (to == Dialect::Logix).then(|| ("subranges".to_owned(), "the whole type, with a check of your own"))
+            (to == Dialect::Logix).then(|| ("subranges".to_owned(), "the whole type, with your own check"))
         }
         Type::Reference(_) => {
             (to == Dialect::Logix).then(|| ("references".to_owned(), "the variable itself, or an index into an array"))

@@ -26,7 +26,7 @@ pub struct Run {
 const MAX_RUN: usize = 512;
 
 impl Comparison {
-    /// What lies alike on both sides is compared in one go.
+    /// Bytes with the same layout on both sides are compared at once.
     pub fn of(sides: &[Side; 2], matched: &[Matched]) -> Self {
         let mut found = Self::default();
         for [a, b] in matched.iter().copied() {
@@ -38,7 +38,7 @@ impl Comparison {
                 found.singles.push([a, b]);
                 continue;
             }
-            // What is beyond the end of a string is no part of its value.
+            // Bytes after the end of a string are not part of its value.
             let is_exact = reprs[0].is_some();
             match found.runs.last_mut() {
                 Some(Run { offsets: start, length, scalars, is_exact: exact })

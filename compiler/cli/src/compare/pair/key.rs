@@ -6,14 +6,14 @@ use super::{Pair, normal};
 use staunch_host::Machine;
 
 impl Pair {
-    /// Looks for counts of which many are alike, by what is compared now.
+    /// Looks for counts of which many are equivalent, by what is compared now.
     pub fn settle_counts(&mut self) {
         let Self { sides, inputs, compared, counters, .. } = &*self;
         self.settled = Settled::of(Known { sides, inputs, compared, counters });
         self.open = vec![false; self.counters.len()];
     }
 
-    /// What decides all that is to come, as a number: two states with one key behave alike under
+    /// What decides all that is to come, as a number: two states with the same key behave the same way under
     /// the same inputs.
     pub fn key(&mut self, ages: &[u8]) -> u128 {
         self.settled.clear();

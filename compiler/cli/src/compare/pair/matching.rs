@@ -35,7 +35,7 @@ pub fn outputs(sides: &[Side; 2], blocks: &[Matched]) -> Vec<Vec<Matched>> {
     blocks.iter().map(of).collect()
 }
 
-/// Whether it is Q of a CTD beside DN of Logix: each says another thing.
+/// Whether it is Q of a CTD matched with DN of Logix: they mean different things.
 pub fn is_done_of_down(sides: &[Side; 2], matched: Matched) -> bool {
     let is_down = |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up);
     block_of(sides, 0, matched).is_some_and(is_down) && is_done_of_logix(sides, 1, matched)

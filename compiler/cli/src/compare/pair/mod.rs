@@ -67,7 +67,7 @@ pub struct Pair {
     compared_bytes: Comparison,
     counter_bytes: Comparison,
     block_bytes: Comparison,
-    /// Counts of which many are alike.
+    /// Counts of which many are equivalent.
     settled: Settled,
     /// Whether some were taken as one.
     pub are_settled: bool,

@@ -1,11 +1,11 @@
-//! States that behave alike have one normal form: a timer's start is how long ago it was, and that
+//! States that behave the same way have one normal form: a timer's start is how long ago it was, and that
 //! only while it matters.
 
 use crate::compare::program::scalar::Instance;
 use staunch_ir::{Program, Type};
 use staunch_runtime::{Pin, Repr, Value};
 
-/// Where a timer's pins lie in a state.
+/// Where a timer's pins are in a state.
 #[derive(Clone, Copy, Debug)]
 pub struct Timer {
     kind: Kind,

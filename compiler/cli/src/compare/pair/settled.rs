@@ -1,10 +1,10 @@
-//! Counts past all that they are compared with are alike, so that an input that pulses for ever leads to few states.
+//! Counts past all values that they are compared with are equivalent, so that an input that pulses for ever leads to few states.
 //!
 //! The programs ask no more of such a count than whether it is past a constant or a preset, which it stays until a reset or a
 //! load whose result does not depend on it. So two states that differ in these counts alone go the same way.
 //!
 //! Where the two systems' counts of one counter are compared with one another, that is not all that is asked of them. As long as
-//! they are the same, of one type, the search goes on with both just past: what makes them differ further on makes them differ
+//! they are the same, of one type, the search continues with both just past: what makes them differ further on makes them differ
 //! there, since both stop at the same limit. The other way round does not hold where they have come to that limit, so that a
 //! difference which is found past there is shown once more from the start.
 
@@ -41,7 +41,7 @@ pub struct Settled {
     counts: Vec<Count>,
     /// What a state is known by in place of its own counts: the side, the offset and the count.
     found: Vec<(usize, usize, Value)>,
-    /// Of these, the ones that the search goes on with.
+    /// Of these, the ones that the search continues with.
     moved: Vec<(usize, usize, Value)>,
 }
 
@@ -49,7 +49,7 @@ pub struct Settled {
 struct Count {
     /// Its position among the counters that both sides have.
     counter: Option<usize>,
-    /// Where it lies on each side.
+    /// Where it is on each side.
     places: [Option<(usize, Repr)>; 2],
     bounds: Bounds,
     is_compared: bool,
@@ -191,7 +191,7 @@ impl Settled {
         own.for_each(|(_, offset, value)| value.write(&mut state[*offset..]));
     }
 
-    /// What the search goes on with in place of what the last look saw: the side, the offset and the count.
+    /// What the search continues with in place of what the last look saw: the side, the offset and the count.
     pub fn moved(&self) -> &[(usize, usize, Value)] {
         &self.moved
     }

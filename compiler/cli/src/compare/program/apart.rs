@@ -1,4 +1,4 @@
-//! What the two systems compute apart: in other types, or because bits are shared on one of them alone.
+//! What the two systems compute differently: in other types, or because bits are shared on only one of them.
 
 use super::walked::{Name, Walked};
 use staunch_ir::{
@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, HashSet};
 /// Variables by their declarations.
 pub type Declared = (StructId, FieldId);
 
-/// Why a value is computed apart; the more telling one last.
+/// Why a value is computed differently; the more important reason last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Why {
     /// The bits that it is made of are shared on one of the two alone.
@@ -19,14 +19,14 @@ pub enum Why {
     Width,
 }
 
-/// What a variable is assigned that is computed apart, and where the first program says so.
+/// An assigned value that is computed differently, and its place in the first program.
 #[derive(Clone, Copy, Debug)]
 pub struct Found {
     pub why: Why,
     pub at: Location,
 }
 
-/// The variables of each program that are assigned what the two compute apart, or where a condition is.
+/// The variables of each program that are assigned values which the two compute differently, or under such a condition.
 pub fn targets(programs: [&Program; 2]) -> [BTreeMap<Declared, Found>; 2] {
     let mut found = [BTreeMap::new(), BTreeMap::new()];
     let shared = programs.map(shared);
@@ -59,7 +59,7 @@ struct Walk<'p, 'f> {
 }
 
 impl<'p> Walk<'p, '_> {
-    /// `around`: where a condition around the statements is computed apart.
+    /// `around`: where a condition around the statements is computed differently.
     fn blocks(&mut self, [a, b]: [&'p [Statement]; 2], around: Option<Found>) {
         for (a, b) in a.iter().zip(b).filter(|(a, b)| a.at == b.at) {
             self.statement([a, b], around);
@@ -91,7 +91,7 @@ impl<'p> Walk<'p, '_> {
         }
     }
 
-    /// Why the values of a statement are computed apart, if they are.
+    /// Why the values of a statement are computed differently, if they are.
     fn values(&self, statements: [&'p Statement; 2]) -> Option<Why> {
         let [a, b] = statements.map(|it| {
             let mut found: Vec<&Expr> = Vec::new();
@@ -110,7 +110,7 @@ impl<'p> Walk<'p, '_> {
         Some(if is_shared(0) != is_shared(1) { Why::Address } else { why })
     }
 
-    /// Why two values are computed apart; what variables are made of is their declarations' matter.
+    /// Why two values are computed differently; the layout of variables is checked at their declarations.
     fn why(&self, [a, b]: [&Expr; 2]) -> Option<Why> {
         let each = |a: &[Expr], b: &[Expr]| a.iter().zip(b).filter_map(|(a, b)| self.why([a, b])).max();
         let one_type = |a: &Expr, b: &Expr| a.ty.elementary() == b.ty.elementary();

@@ -1,5 +1,5 @@
 //! What may come to differ because a variable or block does: all that its value decides, through assignments,
-//! conditions, calls and references. Variables are told apart by their declarations.
+//! conditions, calls and references. Variables are distinguished by their declarations.
 
 use super::walked::{Name, Walked};
 use staunch_ir::visit::{self, Access};

@@ -1,7 +1,7 @@
 //! What a program's statements say of its inputs: the constants that each is compared with, and
 //! whether it is compared with constants alone.
 //!
-//! Variables are told apart by their declarations. What is found for one holds for each.
+//! Variables are distinguished by their declarations. A fact about one holds for each instance of it.
 
 mod numbers;
 

@@ -28,11 +28,11 @@ pub struct Scalar {
     /// The members from the PROGRAM's state, or from the globals, down to it.
     pub way: Way,
     pub at: Whereabouts,
-    /// Its bytes are bits that others share: a text lies there without its length, up to a zero.
+    /// Its bytes are bits that others share: a string is stored there without its length, up to a zero.
     pub is_shared: bool,
 }
 
-/// Members from a structure down to a variable; elements of arrays are not told apart.
+/// Members from a structure down to a variable; elements of arrays are not distinguished.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Way {
     pub from: StructId,
@@ -49,7 +49,7 @@ impl Way {
 /// What is known of a variable by where it is declared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Whereabouts {
-    /// An output of a PROGRAM, or what lies at `%Q`.
+    /// An output of a PROGRAM, or a variable at `%Q`.
     pub is_output: bool,
     /// In an instance of a FUNCTION_BLOCK.
     pub is_inner: bool,

@@ -15,7 +15,7 @@ pub fn find(program: &Program, dialect: Dialect, cycle: Time) -> Vec<String> {
         let line = used(program, row.uses).or_else(|| timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0))?;
         let system = dialect.name().to_ascii_uppercase();
         Some(format!(
-            "{} of {system}, which is not followed here and is used in line {line}: {} ({})",
+            "{} of {system}, which Staunch does not follow and line {line} uses: {} ({})",
             row.uses.words(),
             row.what,
             row.evidence
@@ -31,7 +31,7 @@ pub fn open(program: &Program, dialect: Dialect) -> Vec<String> {
         let line = row.uses.iter().filter_map(|it| used(program, *it)).min()?;
         let (system, what) = (dialect.name().to_ascii_uppercase(), row.what);
         Some(format!(
-            "The documents of {system} leave open {what} (line {line}): here {} ({}).",
+            "The documents of {system} do not specify {what} (line {line}); Staunch: {} ({}).",
             row.here, row.documented
         ))
     });

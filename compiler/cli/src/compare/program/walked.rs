@@ -22,7 +22,7 @@ pub struct Walked {
     pub pin: Option<(BlockId, FieldId)>,
     /// It leads on through a reference, which the last of them holds.
     pub is_followed: bool,
-    /// It leads on to what is no declaration, as a character of a string.
+    /// It leads further, to something without a declaration, as a character of a string.
     is_further: bool,
 }
 

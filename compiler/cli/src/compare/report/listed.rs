@@ -55,7 +55,7 @@ impl Report<'_> {
         let shown = if is_verbose { all.len() } else { HEADINGS };
         match all.len().saturating_sub(shown) {
             0 => all.join("\n"),
-            more => format!("{}\nand {more} more alike, which -v names", all[..shown].join("\n")),
+            more => format!("{}\nand {more} more of the same kind; -v lists them", all[..shown].join("\n")),
         }
     }
 
@@ -74,7 +74,7 @@ impl Report<'_> {
         if !traps.is_empty() {
             let _ = writeln!(text, "  undecided: trap {}", traps.join(", "));
         } else if !undecided.is_empty() {
-            text.push_str("  undecided: it was not seen to differ\n");
+            text.push_str("  undecided: no difference was seen\n");
         }
         text + &impossible(own, self.session.common.verbose > 0)
     }

@@ -127,7 +127,7 @@ impl Report<'_> {
         for it in &self.missing {
             let _ = writeln!(
                 text,
-                "{}: {} has no {} (`{}`): there it is {}; compared as it is.",
+                "{}: {} does not have {} (`{}`): use {} there; compared as it is.",
                 it.at,
                 to.to_ascii_uppercase(),
                 it.what,
@@ -150,14 +150,14 @@ impl Report<'_> {
                 let _ = writeln!(text, "{from} and {to} are equal: {why}.");
             }
             Verdict::NotFound { tried, left } => {
-                let _ = writeln!(text, "No difference between {from} and {to} was found, and none is ruled out.");
+                let _ = writeln!(text, "No difference between {from} and {to} was found, but none is ruled out.");
                 let _ = writeln!(text, "Tried: {}.\nNot tried: {}.", tried.join(", "), left.join("; "));
             }
         }
         if let Some(it) = judged.without_run {
             let _ = writeln!(
                 text,
-                "Where nobody switches it to STOP (`no run` in the file that --assume names), {}.",
+                "If nobody switches it to STOP (`no run` in the file that --assume names), {}.",
                 it.words
             );
         }
@@ -200,8 +200,8 @@ impl Judged<'_> {
     /// Where nothing shorter makes a difference: with another answer to what is left open, something may.
     fn shortest(&self, scans: usize) -> &'static str {
         match self.others.iter().any(|it| it.scans.is_some_and(|it| it < scans)) {
-            true => "no shorter sequence of these inputs makes a difference with these settings; with others, one does",
-            false => "no shorter sequence of these inputs makes a difference",
+            true => "no shorter sequence of these inputs shows a difference with these settings; with others, one does",
+            false => "no shorter sequence of these inputs shows a difference",
         }
     }
 
@@ -216,8 +216,11 @@ impl Judged<'_> {
             let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
         }
         if matches!(self.verdict, Verdict::Differs { .. }) {
-            let _ =
-                write!(text, " The advice is right with {}; with other settings it may not be.", self.variant.words());
+            let _ = write!(
+                text,
+                " The advice is valid with {}, but perhaps not with other settings.",
+                self.variant.words()
+            );
         }
         text.push('\n');
         text
@@ -228,10 +231,10 @@ impl Judged<'_> {
         match self.rest {
             None | Some(Verdict::Differs { .. }) => String::new(),
             Some(Verdict::Equal(why)) => {
-                format!("That is accepted. Beyond it, and what follows from it, the two are equal: {why}.\n")
+                format!("That is accepted. Apart from it and its consequences, the two are equal: {why}.\n")
             }
             Some(Verdict::NotFound { tried, left }) => format!(
-                "That is accepted. Beyond it no difference was found, and none is ruled out.\nTried: {}.\nNot tried: {}.\n",
+                "That is accepted. No other difference was found, but none is ruled out.\nTried: {}.\nNot tried: {}.\n",
                 tried.join(", "),
                 left.join("; ")
             ),

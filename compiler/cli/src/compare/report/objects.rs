@@ -35,7 +35,7 @@ impl Report<'_> {
                 "{{\"reason\":\"finding\",\"from\":\"{from}\",\"to\":\"{to}\",\"kind\":\"missing\",\"at\":{},\"counter\":{},\"trap\":null,\"verdict\":\"missing\",\"scans\":null,\"stimulus\":null,\"why\":{},\"accepted\":false}}",
                 quoted(&it.at),
                 quoted(&it.subject),
-                quoted(&format!("{}: {to} has no {}: there it is {}", it.at, it.what, it.instead))
+                quoted(&format!("{}: {to} does not have {}: use {} there", it.at, it.what, it.instead))
             );
         }
         for (name, ty) in &self.unknown {

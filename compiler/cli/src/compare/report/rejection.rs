@@ -30,7 +30,7 @@ const TIMERS_FROM_LOGIX: &str = "A TIMER and its instructions become an instance
 `t(IN := rung, PT := preset)` of a TON with a TIME, t.DN is t.Q, t.ACC is t.ET; an RTO has no counterpart. ONS and OSR become \
 an R_TRIG, OSF an F_TRIG, OTL and OTU an IF. Give the rewritten program with --against FILE to compare it";
 
-/// What Logix has beside its counters, by name.
+/// What Logix has in addition to its counters, by name.
 const TIMERS_OF_LOGIX: [&str; 9] = ["TIMER", "TON", "TOF", "RTO", "ONS", "OSR", "OSF", "OTL", "OTU"];
 
 /// The reason after the first error.
@@ -127,7 +127,7 @@ mod tests {
     fn widths_are_those_of_whole_numbers() {
         assert!(is_widths(Code::E0203, "expected INT, found WORD"));
         assert!(is_widths(Code::E0202, "40000 does not fit INT"));
-        assert!(!is_widths(Code::E0201, "CASE selects by an integer or enumeration, this is STRING[80]"));
+        assert!(!is_widths(Code::E0201, "CASE needs an integer or an enumeration, but this is STRING[80]"));
         assert!(!is_widths(Code::E0203, "expected INT, found REAL"));
         assert!(!is_widths(Code::E0203, "expected INT, found STRING[80]"));
         assert!(!is_widths(Code::E0208, "the index 0 is out of range"));

@@ -1,4 +1,4 @@
-//! A difference as a table: the scans that tell it, with the inputs that change and what parts.
+//! A difference as a table: the scans that show it, with the inputs that change and the variables that differ.
 
 use super::Report;
 use crate::compare::difference::pitfall::Cause;
@@ -73,7 +73,7 @@ impl Report<'_> {
             let more: Vec<&str> = differences[SHOWN..].iter().map(|it| pair.path(*it)).collect();
             let named = if self.session.common.verbose > 0 { more.len() } else { more.len().min(ALSO) };
             let rest = more.len() - named;
-            let rest = if rest > 0 { format!(" and {rest} more, which -v names") } else { String::new() };
+            let rest = if rest > 0 { format!(" and {rest} more; -v lists them") } else { String::new() };
             let _ = writeln!(text, "  also different: {}{rest}", more[..named].join(", "));
         }
         text.extend(shortest.map(|it| format!("  {it}\n")));
@@ -157,7 +157,7 @@ impl Report<'_> {
         }
         let (place, kind) = (self.place(fault.at), fault.kind);
         Some(format!(
-            "None of the traps explains it: a {kind} ({place}) is a fault on {}, and {} goes on.\n",
+            "None of the traps explains it: a {kind} ({place}) is a fault on {}, but {} continues.\n",
             names[side],
             names[1 - side]
         ))
@@ -177,7 +177,7 @@ impl Report<'_> {
     }
 }
 
-/// Which rows tell the story: all of a short trace; of a longer one those in which an input
+/// Which rows are shown: all of a short trace; of a longer one those in which an input
 /// changes, and the two at its end.
 fn telling(rows: &[Row]) -> Vec<usize> {
     if rows.len() <= HEAD + TAIL + 1 {

@@ -43,9 +43,9 @@ pub struct Exhaustive {
     pub depth: usize,
     /// No state is left.
     pub complete: bool,
-    /// There is no room for more states, or one of them shows what is not seen from the start.
+    /// More states do not fit, or one of them shows what is not seen from the start.
     full: bool,
-    /// It goes on from states with other counts than those which were reached.
+    /// It continues from states with other counts than those which were reached.
     are_moved: bool,
 }
 

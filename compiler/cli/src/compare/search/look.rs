@@ -50,7 +50,7 @@ fn sightings(pair: &Pair, world: &World, event: Option<Event>, faults: Faults) -
         sightings.extend(faults.into_iter().enumerate().filter_map(of));
     }
     if event.is_some() && differs {
-        // What follows from what the event has parted is no finding of its own.
+        // A consequence of a difference that the event made is not a separate finding.
         let parted = pair.parted_by_event();
         let is_otherwise = sightings.iter().any(|it| it.1.is_some_and(|it| it != Pitfall::RESTART));
         let restarted = match parted.is_empty() {
@@ -82,7 +82,7 @@ fn blocks_seen(pair: &Pair, event: Option<Event>) -> Vec<Sighting> {
     blocks.map(|at| (Subject::Block(at), pitfall(at))).collect()
 }
 
-/// The variables that have parted by how they are computed: all that they are made of was the same.
+/// The variables that differ by how they are computed: all their inputs were the same.
 fn computed_seen(pair: &Pair, world: &World) -> Vec<Sighting> {
     let agree = |counter: &usize| pair.outputs[*counter].iter().all(|it| !pair.differs_now(*it));
     let parted = world.computed.iter().enumerate().filter(|it| pair.newly_differs(it.1.variable));

@@ -1,4 +1,4 @@
-//! What is accepted while the search goes on: an accepted finding that has been seen is passed over from then on, with
+//! What is accepted while the search continues: an accepted finding that has been seen is passed over from then on, with
 //! all that its counter, block or variable decides. What else is compared still is.
 
 use super::sighting::{Sighting, Subject};
@@ -32,7 +32,7 @@ pub struct Tolerance {
     events: Vec<(Event, usize)>,
     /// What each bit leaves out of the comparison.
     pub passing: Passing,
-    /// Variables and blocks that are not accepted, of declarations of which others are: what they decide is not told apart.
+    /// Variables and blocks that are not accepted, of declarations of which others are: their effects are not distinguished.
     pub beside: Vec<String>,
 }
 

@@ -37,7 +37,7 @@ pub struct World {
     pub open: Vec<String>,
     /// Of which inputs only a part of the values is tried, since the other system has no more.
     pub in_common: Vec<String>,
-    /// What is accepted, where the search goes on past it.
+    /// What is accepted, if the search continues past it.
     pub tolerance: Option<Tolerance>,
 }
 

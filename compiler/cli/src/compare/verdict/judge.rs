@@ -33,7 +33,7 @@ pub fn judge(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Find
     Ok(scope::not_found(pair, world, &outcome))
 }
 
-/// The search goes on past what is accepted.
+/// Continues the search past what is accepted.
 pub fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Findings) -> Verdict {
     let outcome = strategy::search(pair, world, args.budget, 0);
     findings.note(pair, world, &outcome, false);
@@ -87,7 +87,7 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
                 format!(". Trap {}{of}: {} What to do: {}", it.number(), it.sentence(), advice.trim_end_matches('.'))
             });
             let place = match names.is_empty() {
-                true => "where one faults and the other goes on".to_owned(),
+                true => "where one faults and the other continues".to_owned(),
                 false => format!("in {}", names.join(", ")),
             };
             let words = format!("the two differ after {scans}, {place}{trap}");
@@ -101,7 +101,7 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
         },
         None => WithoutRun {
             verdict: "not found",
-            words: "no difference was found, and none is ruled out".to_owned(),
+            words: "no difference was found, but none is ruled out".to_owned(),
             scans: None,
             pitfall: None,
         },

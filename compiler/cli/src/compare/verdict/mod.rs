@@ -59,7 +59,7 @@ impl Other {
         };
         let verdict = match (weight(verdict, rest), scans) {
             (Weight::Equal, None) => "equal",
-            (Weight::Equal, Some(_)) => "equal beyond what is accepted",
+            (Weight::Equal, Some(_)) => "equal except for what is accepted",
             (Weight::NotFound, _) => "not found",
             (Weight::Differs, _) => "different",
         };
@@ -83,7 +83,7 @@ fn words(verdict: &str, scans: Option<usize>) -> String {
     match (verdict, scans) {
         ("different", Some(1)) => "the two differ after 1 scan".to_owned(),
         ("different", Some(scans)) => format!("the two differ after {scans} scans"),
-        ("not found", _) => "no difference was found, and none is ruled out".to_owned(),
+        ("not found", _) => "no difference was found, but none is ruled out".to_owned(),
         ("rejected", _) => "one of the two systems rejects the program".to_owned(),
         (other, _) => format!("the two are {other}"),
     }

@@ -21,7 +21,7 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
         compared.filter(|it| it.0.covered == Some(Covered::Compared)).map(|it| pair.path(it.1.scalars)).collect();
     let mut text = format!("every reachable state was seen ({} scans)", outcome.scans);
     if pair.are_settled {
-        text.push_str(", counts past all that they are compared with taken as one");
+        text.push_str(", with all counts past the values that they are compared with taken as one state");
     }
     match compared.as_slice() {
         [] => {
@@ -42,7 +42,7 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
         let _ = write!(text, ", with {events} at every point");
     }
     if pair.sides.iter().any(|it| !it.program.structure(it.program.globals).fields.is_empty()) {
-        text.push_str("; nothing else is taken to be written from outside");
+        text.push_str("; it is assumed that nothing else is written from outside");
     }
     assumed(&mut text, world);
     for limit in [kept(pair), of_one(pair)].into_iter().flatten() {
@@ -55,14 +55,14 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
 fn kept(pair: &Pair) -> Option<String> {
     let names = listed(pair.kept.iter().map(|it| format!("{} ({})", pair.path(it.scalars), pair.shown(it))))?;
     Some(format!(
-        "nothing writes {names}, and the initial value was all that was tried (an assumption about a variable makes it an input)"
+        "nothing writes {names}, so only the initial value was tried (an assumption about a variable makes it an input)"
     ))
 }
 
 /// What is not compared because one program alone has it.
 fn of_one(pair: &Pair) -> Option<String> {
     let names = listed(pair.only_one_has(|_| true).into_iter().map(|it| it.1.to_owned()))?;
-    Some(format!("not compared, since one program alone has it: {names}"))
+    Some(format!("not compared, since only one program has it: {names}"))
 }
 
 /// What may follow from accepted findings, and is not compared once they were seen.
@@ -107,7 +107,7 @@ fn assumed(text: &mut String, world: &World) {
     }
 }
 
-/// Counts that go on for ever: a COUNTER turns round where no budget reaches.
+/// Counts that never end: a COUNTER wraps where no budget reaches.
 fn turning(pair: &Pair) -> Option<String> {
     let uses = pitfall::uses(pair);
     let is_tag = |it: &&Instance| it.block.info().family == Family::Logix;
@@ -115,8 +115,8 @@ fn turning(pair: &Pair) -> Option<String> {
     let names = never.filter_map(|at| pair.instances(at).into_iter().find(is_tag).map(|it| format!("`{}`", it.path)));
     let names = listed(names)?;
     Some(format!(
-        "the whole count of {names}, which nothing resets: ACC of Logix goes on past 2147483647, where it turns round to \
-         -2147483648, and no budget leads there; reset it, or stop its rung at a count"
+        "the whole count of {names}, which nothing resets: ACC of Logix wraps after 2147483647 to \
+         -2147483648, and no budget reaches that; reset it, or stop its rung at a count"
     ))
 }
 
@@ -126,7 +126,8 @@ fn after(pair: &Pair, fault: Fault) -> String {
     let rows = pair.sides.iter().filter_map(|it| otherwise(it.dialect, division?));
     let there: Vec<String> =
         rows.map(|it| format!("; {}: {} ({})", system(it.dialect), it.what, it.evidence)).collect();
-    let what = format!("what follows a fault that ends both programs here, {} in line {}", fault.kind, fault.at.line);
+    let what =
+        format!("what happens after a fault that ends both programs here, {} in line {}", fault.kind, fault.at.line);
     what + &there.concat()
 }
 
@@ -163,14 +164,14 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     }
     if !alphabet.complete || !outcome.all_inputs {
         let tried = if outcome.all_inputs { alphabet.vectors.len() } else { alphabet.few };
-        left.push(format!("combinations of inputs other than the {tried} that change few of them"));
+        left.push(format!("combinations of inputs other than the {tried} in which few of them change"));
     }
     let untried = listed(alphabet::untried(pair).into_iter().map(str::to_owned));
-    left.extend(untried.map(|it| format!("inputs that are references, or of another type on the other system: {it}")));
-    let given = listed(alphabet::outputs_given(pair).into_iter().map(str::to_owned));
     left.extend(
-        given.map(|it| format!("what the world outside might write to outputs of blocks that are inputs: {it}")),
+        untried.map(|it| format!("inputs that are references, or have another type on the other system: {it}")),
     );
+    let given = listed(alphabet::outputs_given(pair).into_iter().map(str::to_owned));
+    left.extend(given.map(|it| format!("values written from outside to outputs of blocks that are inputs: {it}")));
     if !pair.whole {
         left.push("elements of long arrays".to_owned());
     }
@@ -178,6 +179,6 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     left.extend(pair.ended.map(|it| after(pair, it)));
     left.extend(kept(pair).into_iter().chain(of_one(pair)));
     let beside = world.tolerance.iter().flat_map(|it| it.beside.iter().cloned());
-    left.extend(listed(beside).map(|it| format!("what {it} decides, which is declared with what is accepted")));
+    left.extend(listed(beside).map(|it| format!("the effect of {it}, declared together with an accepted difference")));
     Verdict::NotFound { tried, left }
 }

@@ -149,7 +149,7 @@ fn text_of(session: &Session, span: Option<Span>, at: Location, extent: Extent) 
 }
 
 impl Branch {
-    /// Not taken; what never got so far is told as a statement.
+    /// Not taken; one that was never reached is reported as a statement.
     fn is_open(&self) -> bool {
         self.taken == 0 && (self.reached > 0 || !matches!(self.way, Way::If(_)))
     }
@@ -215,7 +215,7 @@ fn form(path: &Path) -> Result<Form, String> {
         "info" => Ok(Form::Lcov),
         "html" => Ok(Form::Page),
         "txt" => Ok(Form::Text),
-        _ => Err(format!("--coverage {}: it is `table`, or a file .info, .html or .txt", path.display())),
+        _ => Err(format!("--coverage {}: expected `table`, or a file .info, .html or .txt", path.display())),
     }
 }
 

@@ -12,7 +12,7 @@ pub enum NarrowIntegers {
     AtTheirType,
     At32Bits,
     AsCPromotes,
-    /// Two of one type stay at it; one beside a number without a type, or beside another type, is promoted.
+    /// Two of one type stay at it; one with a number without a type, or with another type, is promoted.
     MixedAsCPromotes,
 }
 
@@ -25,7 +25,7 @@ impl Choice for NarrowIntegers {
             Self::At32Bits => "at 32 bits",
             Self::AsCPromotes => "at 32 bits by operators, at their type by functions",
             Self::MixedAsCPromotes => {
-                "two of one type at that; beside another type, or a number without one, at 32 bits"
+                "two of one type at that type; with another type, or a number without one, at 32 bits"
             }
         }
     }
@@ -73,7 +73,7 @@ impl Choice for RealToInteger {
     }
 }
 
-/// What a real becomes that lies in the middle of two integers.
+/// What a real halfway between two integers becomes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Halves {
     ToEven,
@@ -415,7 +415,7 @@ impl Choice for Literals {
             Self::OfC => "C's `double`, `int` or `long`",
             Self::Immediate => "of its place's type; two integers together are DINTs",
             Self::Smallest => {
-                "of its place's type; beside an unsigned number or bits that do not hold it, the smallest unsigned type"
+                "of its place's type; with an unsigned number or bits that do not hold it, the smallest unsigned type"
             }
         }
     }
@@ -457,7 +457,7 @@ impl Choice for CaseSelector {
     }
 }
 
-/// What a TIME is a number of. What is computed beyond that number wraps.
+/// What a TIME is a number of. A result that does not fit that number wraps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeUnit {
     Nanoseconds,
@@ -481,7 +481,7 @@ impl Choice for TimeUnit {
     }
 }
 
-/// What an LTIME is a number of. What is computed beyond that number wraps.
+/// What an LTIME is a number of. A result that does not fit that number wraps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LongTime {
     Signed,

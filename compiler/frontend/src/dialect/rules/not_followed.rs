@@ -238,7 +238,7 @@ pub const EDGES: &[Edge] = &[
     ),
     edge(
         Dialect::Codesys,
-        "a number with a fraction beside a REAL",
+        "a number with a fraction in an operation with a REAL",
         "a REAL",
         "CODESYS help and Beckhoff, \"Typed Literals\": always LREAL, so that `r = 0.1` is FALSE; SA0024: typed by its use",
         &[Use::Part(Part::FractionBesideReal)],
@@ -266,7 +266,7 @@ pub const EDGES: &[Edge] = &[
     ),
     edge(
         Dialect::Logix,
-        "an integer with more digits than the real beside it",
+        "an integer with more digits than the real operand",
         "the nearest real, of two the even one",
         "1756-RM006K, p. 543: so; p. 546: the lower bits are truncated",
         &[Use::Conversion(Class::Int, Class::Real)],

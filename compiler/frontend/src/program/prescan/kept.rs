@@ -28,7 +28,7 @@ pub(super) fn check(declarations: &mut Declarations<'_>, uses: &[Uses], open: &O
     lost(declarations, uses, open);
 }
 
-/// Two counters on one variable, of which one at least is behind a call.
+/// Two counters on one variable, at least one of which is in a called POU.
 fn shared(declarations: &mut Declarations<'_>, count: &KeptCount, before: &[KeptCount]) {
     let other = before.iter().find(|it| {
         (it.through.is_some() || count.through.is_some())
@@ -45,7 +45,7 @@ fn place_of(declarations: &Declarations<'_>, count: &KeptCount) -> Span {
     count.through.map_or(count.span, |at| declarations.log.name_at(at))
 }
 
-/// The declarations of VAR_IN_OUTs that are behind an RCV.
+/// The declarations of VAR_IN_OUTs that are given as an RCV.
 fn keeping_parameters(declarations: &Declarations<'_>, uses: &[Uses]) -> HashSet<Span> {
     let mut keeping = HashSet::new();
     for (slot, uses) in declarations.pous.iter().zip(uses) {

@@ -69,7 +69,7 @@ pub fn stray_declaration(input: &mut In<'_, '_, '_>, span: Span, closed: bool) {
 
 /// A VAR block or a statement outside of all units.
 pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
-    let it = Diagnostic::new(Code::E0001, span, "this belongs to no unit of the program")
+    let it = Diagnostic::new(Code::E0001, span, "this is outside any unit of the program")
         .label("no PROGRAM, FUNCTION_BLOCK or FUNCTION is open here");
     if statements {
         it.help("write `PROGRAM Main` before it, and `END_PROGRAM` after it")
@@ -81,7 +81,7 @@ pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
 /// `FUNCTION f(x : INT) : INT`, `PROGRAM p()`
 pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
     if empty {
-        return Diagnostic::new(Code::E0020, span, "no parentheses come after the name of a unit")
+        return Diagnostic::new(Code::E0020, span, "the name of a unit has no parentheses after it")
             .label("delete this")
             .help("delete them")
             .fix(span, "");
@@ -93,14 +93,14 @@ pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
 
 /// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`: what is wrong at `span`, and what is meant.
 pub fn array_bounds(span: Span, found: &str, meant: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0001, span, "an array is declared by its first and its last index")
+    Diagnostic::new(Code::E0001, span, "an array is declared with its first and last index")
         .label(format!("expected `[first..last]`, found {found}"))
         .help(format!("write `{meant}`"))
 }
 
 /// `Motor[3(9)]`
 pub fn repeated_arguments(span: Span, list: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0304, span, "the arguments of FB_init are not repeated by a number")
+    Diagnostic::new(Code::E0304, span, "a repeat count is not allowed for arguments of FB_init")
         .label("expected a list for each element")
         .help(format!("write each: `[{list}, {list}, …]`"))
 }
@@ -115,7 +115,7 @@ pub fn bare_structure(span: Span, name: &str) -> Diagnostic {
 /// TYPE or FUNCTION inside a PROGRAM.
 pub fn nested_unit(span: Span, kind: Kind, outer: &str) -> Diagnostic {
     Diagnostic::new(Code::E0001, span, format!("{kind} is inside {}", crate::diagnostic::wording::article(outer)))
-        .label("no unit of the program is inside another")
+        .label("units of the program cannot be nested")
         .help(format!("move it before the {outer}"))
 }
 

@@ -41,7 +41,7 @@ pub fn foreign_operator(input: &mut In<'_, '_, '_>, kind: Kind, op: BinaryOp, si
     input.report(it);
 }
 
-/// A word keeps its distance from what stood directly beside the sign.
+/// A word needs a space where the sign directly touched its neighbours.
 fn spaced(input: &mut In<'_, '_, '_>, operator: &str, sign: Span) -> String {
     if !operator.starts_with(|it: char| it.is_ascii_alphabetic()) {
         return operator.into();

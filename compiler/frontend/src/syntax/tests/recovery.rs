@@ -1,4 +1,4 @@
-//! Each mistake is told once, where it is, and what follows is read as if it were not there.
+//! Each mistake is reported once, where it is, and the rest is read as if it did not exist.
 
 use super::shape::parsed;
 use crate::{lex::index, source::Source};

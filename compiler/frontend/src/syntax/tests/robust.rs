@@ -1,4 +1,4 @@
-//! Texts that are no programs: the parser ends, and says so.
+//! Texts that are not programs: the parser ends, and reports it.
 
 use super::shape::parsed;
 use crate::{diagnostic::Code, source::Source};

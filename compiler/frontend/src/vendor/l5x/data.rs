@@ -20,7 +20,7 @@ pub struct Value<'t> {
 pub enum What<'t> {
     /// A number in Structured Text, and whether it is 0.
     Number(String, bool),
-    /// What is no value of its type.
+    /// Not a value of its type.
     Odd,
     Text(Chunk, bool),
     List(Vec<Value<'t>>),
@@ -49,14 +49,14 @@ fn read<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, ty: &
         "Array" | "ArrayMember" => {
             value.dimensions = element.attribute(file, "Dimensions").unwrap_or_default();
             if array_of(value.dimensions).is_none() {
-                let why = format!("`{}` are no dimensions of an array", value.dimensions);
+                let why = format!("`{}` are not dimensions of an array", value.dimensions);
                 return Err(Broken { place, why });
             }
             let elements = inner(file, reader, ty)?;
             let mut due = vec![0; lengths(value.dimensions).len()];
             for (_, index, element) in &elements {
                 if !index.is_empty() && lengths(index) != due {
-                    let why = format!("the element {index} of an array, where the element {due:?} is due");
+                    let why = format!("the element {index} of an array, where the element {due:?} was expected");
                     return Err(Broken { place: element.place.clone(), why });
                 }
                 advance(&mut due, &lengths(value.dimensions));
@@ -242,7 +242,7 @@ fn date(written: &str) -> Option<i128> {
 }
 
 fn real<'t>(written: &str) -> What<'t> {
-    // Logix writes what is no number as `1.#QNAN` and the like, which has no literal.
+    // Logix writes NaN and infinities as `1.#QNAN` and the like, which have no literal.
     let Ok(value) = written.parse::<f64>() else { return What::Odd };
     let text = if written.contains(['.', 'e', 'E', '#']) { written.to_owned() } else { format!("{written}.0") };
     // The sign of a zero is a value, too.
@@ -305,7 +305,7 @@ impl Value<'_> {
         match &self.what {
             What::Number(text, _) => out.push(Chunk::words(text.clone(), place)),
             What::Odd => {
-                out.push(Chunk::odd(format!("this is no value of the type {}", self.ty), place));
+                out.push(Chunk::odd(format!("this is not a value of the type {}", self.ty), place));
                 out.push(Chunk::words(nothing(self.ty), place));
             }
             What::Text(chunk, _) => out.push(chunk.clone()),
@@ -363,7 +363,7 @@ pub fn name_of<'t>(file: &'t str, element: &Element<'t>) -> Option<Chunk> {
     })
 }
 
-/// `ARRAY[0..9, 0..4] OF ` for `10 5`; nothing where all are 0, and `None` where these are no lengths.
+/// `ARRAY[0..9, 0..4] OF ` for `10 5`; nothing where all are 0, and `None` if these are not lengths.
 pub fn array_of(dimensions: &str) -> Option<String> {
     let parts = dimensions.split([' ', ',']).filter(|it| !it.is_empty());
     let lengths: Vec<u32> = parts.map(|it| it.parse().ok()).collect::<Option<_>>()?;

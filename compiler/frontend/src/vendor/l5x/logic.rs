@@ -202,7 +202,7 @@ impl<'a> Writer<'a, '_> {
                 return (open, Piece::Words(String::new()));
             }
             if let Some(close) = closing(&rest[open..]) {
-                // Its operands are no values: some are left out, some are names of the controller's.
+                // Its operands are not values: some are left out, some are names of the controller.
                 if let Some(service) = controller_service(name) {
                     let message = format!("`{}` is not supported: {service}", name.to_ascii_uppercase());
                     return (open + close + 1, Piece::Refused(message));
@@ -292,7 +292,7 @@ impl Call<'_> {
         let order = if names.is_empty() { "" } else { ", in this order" };
         let many = if given == 1 { "operand" } else { "operands" };
         let message =
-            format!("`{name}` takes a tag of the type `{name}`{names}{order}: {given} {many} in place of {takes}");
+            format!("`{name}` takes a tag of the type `{name}`{names}{order}: {given} {many} instead of {takes}");
         let place = match self.surplus {
             Some(surplus) if !file[surplus..end].contains(['\n', '\r']) => surplus..end,
             _ if !file[self.place.start..end].contains(['\n', '\r']) => self.place.start..end + 1,

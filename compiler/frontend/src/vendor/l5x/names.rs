@@ -49,7 +49,7 @@ pub fn plain(name: &str) -> String {
     name.replace(':', "_")
 }
 
-/// Words of Structured Text that are names in Logix, beside those of types.
+/// Words of Structured Text that are names in Logix, in addition to those of types.
 const WORDS: [&str; 38] = [
     "ACTION",
     "AND_THEN",

@@ -19,7 +19,7 @@ pub struct Routine<'t> {
 #[derive(Debug)]
 pub enum Body {
     Text(Vec<Chunk>),
-    /// Why it is no text.
+    /// Why it is not text.
     Other(&'static str, Range<usize>),
 }
 
@@ -224,7 +224,7 @@ fn lines(reader: &mut Reader<'_>) -> Result<Vec<Chunk>, Broken> {
                 chunks.extend(reader.content("")?);
                 chunks.push(Chunk::words("\n", &reader.last()));
             }
-            // What is between the lines is no part of them.
+            // Text between the lines is not part of them.
             Some(Part::Text(_)) => {}
             Some(Part::Close) | None => return Ok(chunks),
         }

@@ -58,7 +58,7 @@ fn declared<'t>(file: &'t str, element: &Element<'t>, dimensions: &str) -> Vec<C
         Some(array) => chunks.push(Chunk::words(format!(" : {array}"), place)),
         None => {
             let at = ["Dimensions", "Dimension"].iter().find_map(|it| element.attribute_place(file, it));
-            let message = format!("`{dimensions}` are no dimensions of an array");
+            let message = format!("`{dimensions}` are not dimensions of an array");
             chunks.extend([Chunk::odd(message, &at.unwrap_or_else(|| place.clone())), Chunk::words(" : ", place)]);
         }
     }
@@ -137,7 +137,7 @@ fn alias<'t>(
     }
     scope.aliases.insert(name.clone(), target.to_owned());
     let leads_to_itself = names.leads_to_itself(&name, scope);
-    leads_to_itself.then(|| Chunk::odd(format!("this alias stands for itself, by way of `{target}`"), &place))
+    leads_to_itself.then(|| Chunk::odd(format!("this alias refers to itself through `{target}`"), &place))
 }
 
 /// Those of a controller, which may be many: each is written when it has been read.

@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 struct Values {
     members: Vec<(String, Range<usize>, Value)>,
     /// Where a member is whose members have values, by its name in lower case. One that has a
-    /// value as a whole as well is there twice, which is an error like any other.
+    /// value as a whole as well is in it twice, which is an error like any other.
     wholes: FxHashMap<String, usize>,
 }
 
@@ -99,10 +99,7 @@ impl Scl<'_> {
         }
         if plain && retained {
             let place = self.place(self.at);
-            self.refuse(
-                place.start..place.start,
-                "a part of this data block is retained, and a part is not".to_owned(),
-            );
+            self.refuse(place.start..place.start, "only a part of this data block is retained".to_owned());
             self.out.help("write two data blocks: one whose sections are all `VAR RETAIN`, one for the others");
         }
         retained

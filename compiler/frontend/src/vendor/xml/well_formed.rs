@@ -24,7 +24,7 @@ pub fn tag(file: &str, place: &Range<usize>) -> Result<(), Wrong> {
             return Ok(());
         }
         if space == 0 && self::name(&file[at..end]) > 0 {
-            return wrong(at..at + self::name(&file[at..end]), "there is no space before this attribute");
+            return wrong(at..at + self::name(&file[at..end]), "a space is missing before this attribute");
         }
         at = attribute(file, at + space..end, &mut names)?;
     }
@@ -40,7 +40,7 @@ fn attribute<'t>(file: &'t str, place: Range<usize>, names: &mut FxHashSet<&'t s
         return wrong(start..start + first, format!("an attribute is `Name=\"value\"`; {LESS}"));
     }
     if !names.insert(name) {
-        return wrong(start..start + length, format!("the attribute `{name}` is there twice"));
+        return wrong(start..start + length, format!("the attribute `{name}` is given twice"));
     }
     let sign = start + length + space(&file[start + length..end]);
     if !file[sign..end].starts_with('=') {
@@ -96,14 +96,14 @@ fn number(digits: &str) -> Option<char> {
     char::from_u32(code.ok()?).filter(|it| *it >= ' ' || matches!(it, '\t' | '\n' | '\r'))
 }
 
-/// What `&name;` is that is no character.
+/// What `&name;` is if it is not a character.
 pub fn unknown(file: &str, place: Range<usize>) -> Wrong {
     let inner = &file[place.start + 1..place.end - 1];
     if !inner.starts_with('#') && (name(inner) == 0 || name(inner) < inner.len()) {
         return (place.start..place.start + 1, AND.to_owned());
     }
     let written = &file[place.clone()];
-    let what = if inner.starts_with('#') { "no character" } else { "an entity that XML itself does not have" };
+    let what = if inner.starts_with('#') { "not a character" } else { "an entity that XML itself does not have" };
     let why = format!("`{written}` is {what}; {AND}");
     (place, why)
 }

@@ -97,7 +97,7 @@ impl FbdTimer {
         (self.en, self.tt, self.dn, self.acc) = (false, false, false, acc);
     }
 
-    /// Adds what has passed since the last execution, if that was timing too; `dn` at the end of an off delay
+    /// Adds the time since the last execution, if that was timing too; `dn` at the end of an off delay
     /// is FALSE, at that of an on delay TRUE. Time in which the instruction was not executed counts.
     fn time(&mut self, cx: &Context, off: bool) {
         let begins = self.en == off;

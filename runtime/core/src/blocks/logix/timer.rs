@@ -70,7 +70,7 @@ impl Timer {
         self.clear(0);
     }
 
-    /// Before the first scan, for a timer that an `RTO` works on: it goes on from its `acc`.
+    /// Before the first scan, for a timer that an `RTO` works on: it continues from its `acc`.
     #[inline]
     pub fn prescan_rto(&mut self) {
         self.clear(self.acc);
@@ -100,7 +100,7 @@ impl Timer {
         self.dn &= !is_over;
     }
 
-    /// Adds what has passed since the last execution, unless it begins or is paused; whether `pre` is reached.
+    /// Adds the time since the last execution, unless it begins or is paused; returns whether `pre` is reached.
     fn time(&mut self, cx: &Context, begins: bool, runs: bool) -> bool {
         let now = cx.now().div_euclid(MILLISECOND);
         let passed = if begins { 0 } else { now.wrapping_sub(self.last).max(0) };

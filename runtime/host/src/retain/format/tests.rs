@@ -8,7 +8,7 @@ fn layout() -> Layout {
     Layout::new("Main", VARIABLES.into_iter())
 }
 
-/// State `number` of a program: each byte tells it.
+/// State `number` of a program: each byte shows the number.
 fn values(number: u8) -> Vec<u8> {
     (0..704).map(|at| number.wrapping_mul(31).wrapping_add(u8::try_from(at % 251).unwrap())).collect()
 }

@@ -10,7 +10,7 @@ fn layout() -> Layout {
     Layout::new("Main", [("main.x", "ARRAY", SIZE)].into_iter())
 }
 
-/// State `number` of a program, which each of its words tells.
+/// State `number` of a program: each of its words shows the number.
 fn values(number: u32) -> Vec<u8> {
     number.to_le_bytes().repeat(SIZE / 4)
 }
@@ -20,7 +20,7 @@ fn fault(number: u32) -> String {
     if number % 2 == 0 { String::new() } else { format!("p.st:{number}:1: fault: division by zero") }
 }
 
-/// What a start finds: the number of the state, 0 without a file, and what the keeper is told of it.
+/// What a start finds: the number of the state, 0 without a file, and what the keeper gets of it.
 fn start(file: Option<&[u8]>) -> (u32, Option<(Time, Found)>) {
     let Some(file) = file else { return (0, None) };
     let content = recover(file).expect("a file that was once saved can be recovered");
@@ -93,7 +93,7 @@ fn a_disk_that_is_full_is_still_written_inside() {
     keeper.save(1, &values(1), "").unwrap();
     disk.set(Faults { room: Some(0), ..Faults::default() });
     keeper.save(2, &values(2), "").unwrap();
-    // A start finds the file, and goes on inside of it.
+    // A start finds the file, and continues inside it.
     let (_, found) = start(disk.cached().as_deref());
     Keeper::new(disk.clone(), layout(), found).save(3, &values(3), "").unwrap();
     assert_eq!(start(disk.after_power_cut().as_deref()).0, 3);

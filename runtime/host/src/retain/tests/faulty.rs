@@ -5,7 +5,7 @@ use super::super::storage::{Storage, Which};
 use std::io;
 use std::sync::{Arc, Mutex};
 
-/// The least that a disk writes at once; torn here all the same.
+/// The least that a disk writes at once; here it can still be torn.
 const SECTOR: usize = 512;
 
 /// Numbers that are random enough.

@@ -16,7 +16,7 @@ fn keeper<S: Storage>(storage: S) -> Keeper<S> {
     Keeper::new(storage, Layout::new("Main", [("main.x", "ARRAY", SIZE)].into_iter()), None)
 }
 
-/// What is kept of a state in which all bytes are alike.
+/// What is kept of a state in which all bytes are equal.
 const fn all(number: u8) -> [u8; SIZE] {
     [number; SIZE]
 }
@@ -67,7 +67,7 @@ fn a_change_is_saved_and_no_change_is_not() {
     };
     let mut state = [0; STATE];
     offer(1, &state);
-    // What is not retained is no change.
+    // A variable that is not retained is not a change.
     state[50] = 1;
     offer(2, &state);
     state[0] = 1;

@@ -13,7 +13,7 @@ use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Open
 use texts::{BLOCKS, FALLING, RISES, TO_LOGIX};
 
 /// Where no text is proved.
-const OWN: &str = "No way of writing it is proved for this direction and this kind of counter: write it anew, and compare that \
+const OWN: &str = "No rewrite has been proved for this direction and this kind of counter: rewrite it yourself, and compare that \
      with `--against`.";
 
 fn all() -> impl Iterator<Item = &'static Advice> {

@@ -13,7 +13,7 @@ use staunch_host::Event;
 use staunch_runtime::{Family, PinRole};
 use std::collections::HashSet;
 
-/// What the last scan has made of a counter: `None` where it has not parted by it, and within it no
+/// What the last scan has made of a counter: `None` if it does not differ because of it, and within it no
 /// pitfall where none explains it.
 pub fn seen(pair: &Pair, at: usize, event: Option<Event>, habits: Habits) -> Option<Option<Pitfall>> {
     let parted = pair.outputs[at].iter().any(|it| pair.newly_differs(*it));
@@ -232,7 +232,7 @@ impl Relevant {
     }
 }
 
-/// A counter that parts from its counterpart.
+/// A counter that starts to differ from its counterpart.
 #[derive(Clone, Copy, Debug)]
 struct Parting {
     counter: usize,
@@ -272,7 +272,7 @@ fn exchanged(pair: &Pair, rows: &[Row], relevant: &Relevant, found: &[Parting]) 
     sorted.into_iter().filter(|_| several).find(|it| pair.agrees_with(it.counter, rows, &relevant.found))
 }
 
-/// The first row in which a counter parts by a pitfall.
+/// The first row in which a counter differs because of a pitfall.
 fn parting(pair: &Pair, rows: &[Row], counter: usize, habits: Habits) -> Option<Parting> {
     let outputs = &pair.outputs[counter];
     (0..rows.len()).find_map(|at| {

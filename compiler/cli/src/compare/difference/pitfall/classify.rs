@@ -109,7 +109,7 @@ impl Case {
         self.kinds[0].repr != self.kinds[1].repr
     }
 
-    /// A count at a limit of its type is where the other goes on.
+    /// A count is at a limit of its type, where the other counts further.
     fn at_limit(&self) -> bool {
         (0..2).any(|side| {
             let limits = self.kinds[side].repr.range().unwrap_or((0, 0));
@@ -145,7 +145,7 @@ impl Case {
 /// Which pitfall a counter's difference shows, if one does.
 pub fn classify(case: &Case) -> Option<Pitfall> {
     let number = if case.restarted && case.kept_alike {
-        // What both keep is not parted by the event: Logix looks at its rungs anew.
+        // If both keep it, the event makes no difference: Logix evaluates its rungs again.
         match case.parts(Family::Logix) && (case.up() || case.down()) {
             // An edge flag that one side alone keeps gives it another input.
             true => (!case.given_differs()).then_some(5),

@@ -71,7 +71,7 @@ pub const OF_OTHERS: &str = "of the two systems";
 /// Why a pitfall cannot happen to a counter, by the two systems' rules and the program's text alone.
 pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Option<&'static str> {
     let kinds = instances.map(kind);
-    let [Some(a), Some(b)] = kinds else { return Some("it is no counter") };
+    let [Some(a), Some(b)] = kinds else { return Some("it is not a counter") };
     let parts = |family: Family| (a.family == family) != (b.family == family);
     let parts_openplc = is_openplc(a.family) != is_openplc(b.family);
     let has = |role: PinRole| instances.iter().any(|it| it.has(role));
@@ -84,23 +84,23 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         _ if !usage.is_used => Some("it is never called"),
         _ if usage.is_of_one => Some("one of the two programs never calls it"),
         1 => no_cscape,
-        2 | 3 if parts_openplc => Some("what OPENPLC does is trap 15"),
+        2 | 3 if parts_openplc => Some("the behaviour of OPENPLC is trap 15"),
         2 => (a.stops == b.stops).then_some("both systems stop at PV, or neither does").or(no_up),
         3 => no_down.or_else(|| (goes_below(a) == goes_below(b)).then_some("both systems do the same at 0")),
         4 => no_logix
             .or((!instances.iter().any(|it| it.has(PinRole::Down) && !it.has(PinRole::Up))).then_some("it is no CTD"))
-            .or((!usage.shows_done && !usage.resets).then_some("nothing reads its DN, or loads it")),
+            .or((!usage.shows_done && !usage.resets).then_some("nothing reads its DN or loads it")),
         5 => no_logix,
         13 => no_logix.or((!usage.shows_done).then_some("nothing reads its DN")),
         6 => no_logix.and(no_cscape).or((!usage.resets).then_some("nothing resets or loads it")),
         7 => (a.repr != b.repr || same_kind || !parts(Family::Logix))
-            .then_some("both systems do the same at a limit, or have other limits"),
+            .then_some("both systems do the same at a limit, or have different limits"),
         8 => (a.repr == b.repr).then_some("both systems count in the same type"),
         9 => Some("its pins have the same names, or are given by position"),
         10 => no_cscape.or(usage.constant_preset.then_some("its preset is one constant")),
-        11 => usage.kept_alike.then_some("both systems keep, or lose, the same of it"),
-        12 => (!usage.reset_depends).then_some("what resets it does not depend on its own output"),
-        14 => no_down.or((!usage.habits.guards_itself).then_some("no input of it depends on its own count")),
+        11 => usage.kept_alike.then_some("both systems keep, or lose, the same part of it"),
+        12 => (!usage.reset_depends).then_some("its reset does not depend on its own output"),
+        14 => no_down.or((!usage.habits.guards_itself).then_some("none of its inputs depends on its own count")),
         17 | 18 if !parts(Family::Openplc4) => Some("OPENPLC4 is neither, or both, of the two systems"),
         17 => no_down.or_else(|| (a.falls == b.falls).then_some("both systems count CD on the same edge")),
         18 => no_down.or(no_up),

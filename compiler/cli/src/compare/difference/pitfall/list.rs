@@ -6,7 +6,7 @@ pub struct Pitfall(usize);
 
 const PITFALLS: [&str; 20] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
-    "Past PV: the count of CSCAPE stays at PV, and so does that of a CTU of CODESYS and TwinCAT with `ctu-stop-at-pv = true`; the others go on. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
+    "Past PV: the count of CSCAPE stays at PV, and so does that of a CTU of CODESYS and TwinCAT with `ctu-stop-at-pv = true`; the others continue to count. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
     "CTD at 0: IEC, S7 and Logix go negative; CSCAPE and CODESYS stay.",
     "Logix CTD: DN is TRUE while ACC >= PRE, so it drops when done; there is no load input.",
     "Input already TRUE at start-up: Logix does not count it, the others do.",

@@ -59,7 +59,10 @@ fn position(texts: &[String], literal: &str) -> Result<Value, String> {
     let found = texts.iter().position(|it| it == literal).and_then(|it| u16::try_from(it).ok());
     found.map(Value::U16).ok_or_else(|| {
         let shown: Vec<_> = texts.iter().filter(|it| it.len() < SHOWN).map(String::as_str).collect();
-        format!("it is not tried with {literal}, but with what the programs compare it with: {}", shown.join(", "))
+        format!(
+            "the search does not try {literal}, but only the values that the programs compare it with: {}",
+            shown.join(", ")
+        )
     })
 }
 
@@ -83,10 +86,10 @@ impl Parser<'_> {
         let is_it = |it: &Named<'_>| it.name.eq_ignore_ascii_case(name) || it.is_in_full(name);
         let found = self.inputs.iter().position(is_it);
         found.ok_or_else(|| match self.inputs {
-            [] => format!("`{name}` is no input: the program has none"),
+            [] => format!("`{name}` is not an input: the program has none"),
             inputs => {
                 let names: Vec<_> = inputs.iter().map(|it| it.name.as_str()).collect();
-                format!("`{name}` is no input; they are {}", names.join(", "))
+                format!("`{name}` is not an input; the inputs are {}", names.join(", "))
             }
         })
     }
@@ -101,7 +104,7 @@ impl Parser<'_> {
         let limit = value(text).map_err(|it| format!("{name}: {it}"))?;
         match subrange {
             Some((low, high)) if !inside(&limit) => {
-                Err(format!("`{name}` is declared as {low}..{high}, and {text} is not within that"))
+                Err(format!("`{name}` is declared as {low}..{high}, but {text} is not in that range"))
             }
             Some(_) | None => Ok(limit),
         }
@@ -158,10 +161,10 @@ impl Parser<'_> {
             return Err("a value is missing at the end".to_owned());
         };
         if is_text && !matches!(relation, Relation::Eq | Relation::Ne) {
-            return Err(format!("`{name}` is a string: it is compared by `=` and `<>`"));
+            return Err(format!("`{name}` is a string: compare it with `=` or `<>`"));
         }
         let limit = self.limit(at, value).map_err(|error| match self.input(value) {
-            Ok(_) => format!("`{value}` is an input, too: `{name}` is compared with a value"),
+            Ok(_) => format!("`{value}` is also an input, but `{name}` must be compared with a value"),
             Err(_) => error,
         })?;
         self.tokens = rest;

@@ -100,7 +100,7 @@ impl Walk<'_> {
         }
         let units = self.units(path, ty);
         let is_touched = |bytes: &Range<usize>| leaves.iter().any(|it| it.meets(bytes));
-        // What lies between the members of a structure is no one's.
+        // Bytes between the members of a structure belong to no variable.
         let gaps: Vec<_> = units.iter().filter(|it| !is_touched(&it.1)).map(|it| it.1.start).collect();
         let (texts, others): (Vec<Leaf>, Vec<Leaf>) =
             leaves.into_iter().partition(|it| matches!(it.ty, Type::String(_)));

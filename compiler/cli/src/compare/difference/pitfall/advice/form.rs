@@ -67,7 +67,7 @@ impl Advice {
         Self { rises: Some(rises), ..self }
     }
 
-    /// Where CTU of the system that the program comes from stops at its preset, or goes on.
+    /// Where CTU of the system that the program comes from stops at its preset, or counts further.
     pub const fn where_it_stops(self, stops: bool) -> Self {
         Self { stops: Some(stops), ..self }
     }

@@ -59,7 +59,7 @@ fn what_happened_before_decides() {
     assert_eq!(number(Case { guards_itself: true, ..guarded }), Some(14));
     let kept = case(LOGIX, count(IDLE, 1), [IDLE, count(IDLE, 1)]);
     assert_eq!(number(Case { restarted: true, ..kept }), Some(11));
-    // Where both keep it, the event is not what parts them.
+    // Where both keep it, the event is not the cause.
     let below = case(CODESYS, IDLE, [count(down, -1), down]);
     assert_eq!(number(Case { restarted: true, kept_alike: true, ..below }), Some(3));
     let openplc = Kind { family: Family::Openplc, stops: true, ..IEC };
