@@ -58,6 +58,7 @@ pub(crate) enum Ending<'a> {
 }
 
 /// How values get to the disk.
+#[allow(clippy::large_enum_variant, reason = "a run has one; paths are larger on Windows")]
 #[derive(Debug)]
 enum Saving {
     /// When the run says so, and it waits.
