@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(names, Target::SUPPORTED[..3]);
         for name in Target::SUPPORTED {
             let isa = Target::parse(name).unwrap().isa().unwrap();
-            assert_eq!(plain_isa(&*isa).flags().opt_level(), settings::OptLevel::None);
+            assert_eq!(plain_isa(&*isa).flags().opt_level(), OptLevel::None);
         }
         assert!(Target::parse("x86_64-unknown-linux-musl").unwrap().isa().is_ok());
         assert!(Target::host().is_ok());
