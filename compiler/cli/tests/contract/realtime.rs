@@ -129,7 +129,8 @@ fn a_service_manager_is_told_of_the_start_of_scans_and_of_the_end() {
 
 #[test]
 fn signals_ask_for_figures_and_for_an_end() {
-    let folder = Folder::with("signals", &[("main.st", COUNTER)]);
+    let source = "PROGRAM Main VAR RETAIN n : DINT; END_VAR n := n + 1; END_PROGRAM";
+    let folder = Folder::with("signals", &[("main.st", source)]);
     folder.staunch("build main.st -o plant -q").out(0);
     let mut command = Command::new(folder.0.join("plant"));
     command.args(["--retain", "kept", "--cycle", "2ms"]).current_dir(&folder.0);
