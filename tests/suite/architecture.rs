@@ -46,6 +46,8 @@ const UNSAFE: &[&str] = &[
     "runtime/host/src/allocations.rs",
     "runtime/host/src/compiled.rs",
     "runtime/host/src/retain/lock.rs",
+    "runtime/host/src/realtime/system.rs",
+    "runtime/host/src/realtime/watchdog.rs",
     "runtime/host/src/signal.rs",
     "runtime/host/src/terminal.rs",
     "compiler/native/src/jit.rs",

@@ -20,7 +20,7 @@ pub enum Dialect {
     Cscape,
     /// CODESYS (and TwinCAT).
     Codesys,
-    /// OpenPLC v3, OpenPLC Editor before v4.1, and Beremiz: as `Iec`, with MATIEC's counters.
+    /// OpenPLC v3, OpenPLC Editor before v4.2, and Beremiz: as `Iec`, with MATIEC's counters.
     Openplc,
     /// OpenPLC from v4.1: as `Iec`, with the counters and timers of STruC++.
     Openplc4,

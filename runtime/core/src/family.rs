@@ -11,9 +11,9 @@ pub enum Family {
     Cscape,
     /// CODESYS Standard and Standard64.
     Codesys,
-    /// OpenPLC v3, OpenPLC Editor before v4.1, and Beremiz: MATIEC's library, as it runs.
+    /// OpenPLC v3, OpenPLC Editor before v4.2, and Beremiz: MATIEC's library, as it runs.
     Openplc,
-    /// OpenPLC Editor and Runtime from v4.1: STruC++'s library, as it runs.
+    /// OpenPLC Editor from v4.2 and Runtime from v4.1: STruC++'s library, as it runs.
     Openplc4,
     /// Rockwell Logix 5000.
     Logix,

@@ -97,7 +97,7 @@ impl fmt::Display for Error {
 }
 
 fn rounded(time: Time) -> String {
-    crate::run::rounded(Duration::from_nanos(u64::try_from(time).unwrap_or(0)))
+    crate::spoken::rounded(Duration::from_nanos(u64::try_from(time).unwrap_or(0)))
 }
 
 impl std::error::Error for Error {}

@@ -14,6 +14,7 @@ mod domain;
 mod csv;
 mod json;
 mod literal;
+mod spoken;
 mod value;
 
 mod column;

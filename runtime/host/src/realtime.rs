@@ -13,8 +13,8 @@ pub use figures::{Figures, Kept};
 pub use histogram::Histogram;
 
 use crate::map::Map;
-use crate::run::rounded;
 use crate::schedule::{Schedule, Turn};
+use crate::spoken::rounded;
 use crate::{Error, signal};
 use reporter::Reporter;
 use staunch_runtime::Time;

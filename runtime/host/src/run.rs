@@ -5,7 +5,6 @@ mod summary;
 
 pub use options::{Moment, Options};
 pub use summary::Summary;
-pub(crate) use summary::rounded;
 
 use crate::column::{columns, overlays};
 use crate::map::Map;

@@ -333,7 +333,7 @@ t(IN := a, PT := T#30ms); latch(t.Q, FALSE); mask := 3;",
     let (code, text) = moved(&wide, "iec", "openplc", &[]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("OPENPLC does not have LTIME (`t`): use TIME"), "{text}");
-    assert!(text.contains("OPENPLC has no WSTRING (`w`)"), "{text}");
+    assert!(text.contains("OPENPLC does not have WSTRING (`w`)"), "{text}");
     let (_, text) = moved(&wide, "iec", "cscape", &[]);
     assert!(
         text.contains("Not known: no public document says whether CSCAPE has LTIME (`t`), WSTRING (`w`)."),

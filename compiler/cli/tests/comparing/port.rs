@@ -38,7 +38,7 @@ END_PROGRAM
     let file = OWN.path().join("written.st").display().to_string();
     let arguments = ["--from", "iec", "--to", "logix", "--write", &file];
     let said = printed(&command().arg(&path).args(arguments).output().expect("it starts"));
-    assert!(said.contains("Studio 5000 has CTU and RES in ladder only") && said.contains("(line 4)"), "{said}");
+    assert!(said.contains("Studio 5000 has CTU and RES only in ladder") && said.contains("(line 4)"), "{said}");
 }
 
 /// A counter that is inherited is rewritten for Logix where an heir calls it.

@@ -154,7 +154,10 @@ END_PROGRAM
     assert!(out.contains("scan  @event  probe.n  probe.ok  c.CV iec  c.CV codesys  q.n iec  q.n codesys"), "{out}");
     assert!(out.contains("assumed: probe.n 2..5"), "{out}");
     let moved = text(&run(&format!("{} --from iec --to logix", path.display())).stdout);
-    assert!(moved.contains("shared_bits.st:3: LOGIX has no BYTE (`low`)") && !moved.contains("bits_of"), "{moved}");
+    assert!(
+        moved.contains("shared_bits.st:3: LOGIX does not have BYTE (`low`)") && !moved.contains("bits_of"),
+        "{moved}"
+    );
 }
 
 #[test]

@@ -170,7 +170,7 @@ fn a_project_file_holds_the_settings_of_the_command_line() {
     has(&folder.staunch("check good.st").err(0), &["Settings ", "staunch.toml", "Read good.st", "Checked good.st"]);
     assert_eq!(folder.staunch("check good.st -q").err(0), "");
     folder.write("staunch.toml", "color = \"pink\"\n");
-    has(&folder.staunch("check good.st").err(2), &["`color` is one of \"auto\", \"always\", \"never\""]);
+    has(&folder.staunch("check good.st").err(2), &["`color` must be one of \"auto\", \"always\", \"never\""]);
     folder.write("staunch.toml", "quiet = 1\n");
     has(&folder.staunch("check good.st").err(2), &["`quiet` must be true or false"]);
 }

@@ -143,7 +143,7 @@ fn an_output_does_not_replace_an_input() {
     ] {
         has(&folder.staunch(call).err(2), &["would replace", "write to another file"]);
     }
-    has(&folder.staunch("run main.st --retain new.csv --trace ./new.csv").err(2), &["are one file"]);
+    has(&folder.staunch("run main.st --retain new.csv --trace ./new.csv").err(2), &["are the same file"]);
     for (name, text) in files {
         assert_eq!(folder.read(name), text);
     }

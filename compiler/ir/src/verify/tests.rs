@@ -146,7 +146,7 @@ fn instances() {
 fn variables() {
     broken("of another type", |program| program.classes[1].variables[0].place = value(lint(99), 1));
     broken("of another type", |program| program.classes[1].variables[0].place.ty = Type::BOOL);
-    broken("no part of what it is a view of", |program| {
+    broken("not part of what it is a view of", |program| {
         let address = Address { area: Area::Memory, module: Module::default(), bit: 0, width: 64 };
         program.classes[1].variables[0].view = Some(View { ty: Type::Elementary(Elementary::Lword), bit: 0, address });
     });

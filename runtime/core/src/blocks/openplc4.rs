@@ -1,4 +1,4 @@
-//! OpenPLC Editor and Runtime from v4.1, whose library is that of STruC++, written in Structured Text
+//! OpenPLC Editor from v4.2 and Runtime from v4.1, whose library is that of STruC++, written in Structured Text
 //! (`libs/sources/iec-standard-fb`, read and run at 0.6.1). `CTU` is [`openplc`]'s. A `CTD`, and the
 //! `cd` of a `CTUD`, count on the falling edge; a `CTUD` counts up and then down, each judged on the count
 //! as it then is. Timers are state machines, which look at the time from the call after the edge on.

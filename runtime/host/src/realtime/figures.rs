@@ -2,7 +2,7 @@
 
 use super::histogram::Histogram;
 use crate::json::quote;
-use crate::run::rounded;
+use crate::spoken::rounded;
 use staunch_runtime::Time;
 use std::fmt::Write as _;
 use std::time::Duration;

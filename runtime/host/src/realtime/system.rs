@@ -34,6 +34,9 @@ mod linux {
     const ABSOLUTE: c_int = 1;
     const FIFO: c_int = 1;
     const CURRENT_AND_FUTURE: c_int = 1 | 2;
+    const WHEN_TOUCHED: c_int = 4;
+    /// Of a process with more pages than these, as the compiler's own, most are never touched.
+    const MOST_PAGES: u64 = 65_536;
     const TIMER_SLACK: c_int = 29;
     /// Processors that a set holds.
     const MOST_PROCESSORS: usize = 1024;
@@ -89,10 +92,13 @@ mod linux {
         checked(unsafe { sched_setscheduler(0, FIFO, &parameters) })
     }
 
-    /// All memory of the process stays in memory, also what comes later.
+    /// All memory of the process is brought into memory and stays there, also what comes later.
     pub fn lock_memory() -> io::Result<()> {
+        let statistics = std::fs::read_to_string("/proc/self/statm").unwrap_or_default();
+        let pages = statistics.split(' ').next().and_then(|it| it.parse::<u64>().ok());
+        let when = if pages.is_some_and(|it| it > MOST_PAGES) { WHEN_TOUCHED } else { 0 };
         // SAFETY: it takes any number.
-        checked(unsafe { mlockall(CURRENT_AND_FUTURE) })
+        checked(unsafe { mlockall(CURRENT_AND_FUTURE | when) })
     }
 
     /// The calling thread runs on that processor.

@@ -1,6 +1,6 @@
 //! Sees from a thread of its own whether scans still end, and says so to those who watch the process: systemd, a device.
 
-use super::system;
+use super::system::{take_priority, time};
 use std::fs::File;
 use std::io::{self, Write as _};
 use std::path::Path;
@@ -52,7 +52,7 @@ impl Watchdog {
         let watch = Watch { shared: shared.clone(), limit, device, manager, period };
         let thread = std::thread::Builder::new().name("watchdog".to_owned()).spawn(move || {
             // The scans' own priority was taken: a higher one can be as well.
-            let _ = priority.map(|it| system::take_priority(it.saturating_add(1)));
+            let _ = priority.map(|it| take_priority(it.saturating_add(1)));
             watch.run();
         })?;
         Ok(Some(Self { shared, thread: Some(thread) }))
@@ -78,15 +78,15 @@ impl Drop for Watchdog {
 impl Watch {
     fn run(mut self) {
         self.tell("READY=1");
-        let (mut seen, mut since) = (0, system::time());
+        let (mut seen, mut since) = (0, time());
         while !self.shared.is_done.load(Ordering::Relaxed) {
             std::thread::park_timeout(self.period);
             let scans = self.shared.scans.load(Ordering::Relaxed);
             if scans != seen {
-                (seen, since) = (scans, system::time());
+                (seen, since) = (scans, time());
                 self.tell("WATCHDOG=1");
                 let _ = self.device.as_mut().map(|it| it.write_all(b"1"));
-            } else if let Some(limit) = self.limit.filter(|it| system::time() - since > *it) {
+            } else if let Some(limit) = self.limit.filter(|it| time() - since > *it) {
                 end(limit);
             }
         }
@@ -105,7 +105,7 @@ fn end(limit: Duration) -> ! {
     unsafe extern "C" {
         fn _exit(code: i32) -> !;
     }
-    let text = format!("error: watchdog: no scan has ended for {}\n", crate::run::rounded(limit));
+    let text = format!("error: watchdog: no scan has ended for {}\n", crate::spoken::rounded(limit));
     let _ = io::stderr().write_all(text.as_bytes());
     // SAFETY: it takes any number.
     unsafe { _exit(FAULT) }

@@ -130,9 +130,21 @@ pub fn no_result_type(span: Span, opener: &str) -> Diagnostic {
 
 /// `x AT IX0.0`
 pub fn address_without_sign(span: Span, text: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0409, span, "a direct address starts with `%`")
-        .help(format!("write `%{text}`"))
-        .fix(span, format!("%{text}"))
+    let problem = Diagnostic::new(Code::E0409, span, "a direct address starts with `%`");
+    match is_address(text) {
+        true => problem.help(format!("write `%{text}`")).fix(span, format!("%{text}")),
+        false => {
+            problem.help("write the address, as `%QX0.0`: only projects of OpenPLC Editor have names for addresses")
+        }
+    }
+}
+
+/// `QX0.0`, `MW10`, `I*`
+fn is_address(text: &str) -> bool {
+    let upper = text.to_ascii_uppercase();
+    let Some(rest) = upper.strip_prefix(['I', 'Q', 'M']) else { return false };
+    let rest = rest.strip_prefix(['X', 'B', 'W', 'D', 'L']).unwrap_or(rest);
+    rest.starts_with(|it: char| it.is_ascii_digit() || it == '*')
 }
 
 /// `x : BOOL AT %QX0.0;`, of which this is reported where the dialect does not have it.
