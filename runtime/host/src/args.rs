@@ -12,7 +12,7 @@ use std::ffi::OsString;
 /// The options of an executable.
 #[derive(Clone, Debug)]
 pub enum Wish {
-    Run(Options),
+    Run(Box<Options>),
     Bench(BenchOptions),
     Help(String),
     Version,
@@ -96,7 +96,7 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
     let Options { program, scans, cycle, loop_budget, stimulus, .. } = options;
     Ok(match bench {
         true => Wish::Bench(BenchOptions { program, scans, cycle, loop_budget, stimulus }),
-        false => Wish::Run(Options { program, scans, cycle, loop_budget, stimulus, ..options }),
+        false => Wish::Run(Box::new(Options { program, scans, cycle, loop_budget, stimulus, ..options })),
     })
 }
 

@@ -25,7 +25,7 @@ pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
         Err(error) => return failed(&Options::default(), &error),
     };
     match wish {
-        Wish::Run(options) => start(&mut machine, &map, options),
+        Wish::Run(options) => start(&mut machine, &map, *options),
         Wish::Bench(options) => match bench(&mut machine, &map, &options) {
             Ok(timing) => print(&format!("{timing}\n")),
             Err(error) => failed(&Options::default(), &error),

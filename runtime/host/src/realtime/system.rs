@@ -67,7 +67,7 @@ mod linux {
         let mut now = Timespec { seconds: 0, nanoseconds: 0 };
         // SAFETY: it fills the structure, and there is always a monotonic clock.
         unsafe { clock_gettime(MONOTONIC, &mut now) };
-        Duration::new(now.seconds.unsigned_abs().into(), u32::try_from(now.nanoseconds).unwrap_or(0))
+        Duration::new(u64::try_from(now.seconds).unwrap_or(0), u32::try_from(now.nanoseconds).unwrap_or(0))
     }
 
     /// Sleeps until the clock shows `deadline`, or a signal arrives.
