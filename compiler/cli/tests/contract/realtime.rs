@@ -97,7 +97,7 @@ fn a_watchdog_ends_a_scan_that_does_not() {
     let folder = Folder::with("endless", &[("main.st", COUNTER), ("endless.st", endless)]);
     let call = "run endless.st --realtime --watchdog 100ms --loop-budget 1000000000000000";
     has(&folder.staunch(call).err(3), &["error: watchdog: no scan has ended for 100 ms"]);
-    folder.staunch("run main.st --realtime --watchdog 500ms --scans 30 --cycle 5ms -q").out(0);
+    folder.staunch("run main.st --realtime --watchdog 10s --scans 30 --cycle 5ms -q").out(0);
     let short = folder.staunch("run main.st --realtime --watchdog 5ms --cycle 10ms");
     has(&short.err(2), &["--watchdog 5.00 ms is not longer than 10.0 ms"]);
     // A watchdog of the machine: what it is shown, and that it is put off at the end.

@@ -3,8 +3,6 @@
 //!
 //! The functions are declared here, and not taken from a crate: the command compiles this one with rustc alone.
 
-use std::time::Duration;
-
 /// Bytes of stack that are touched before the first scan, so that no scan waits for a page.
 const STACK: usize = 256 << 10;
 const PAGE: usize = 4096;
@@ -26,9 +24,9 @@ pub(super) use other::{lock_memory, pin, sleep_until, take_priority, time, wake_
 
 #[cfg(target_os = "linux")]
 mod linux {
-    use super::Duration;
     use core::ffi::{c_int, c_long, c_ulong, c_void};
     use std::io;
+    use std::time::Duration;
 
     const MONOTONIC: c_int = 1;
     const ABSOLUTE: c_int = 1;
@@ -117,9 +115,9 @@ mod linux {
 
 #[cfg(not(target_os = "linux"))]
 mod other {
-    use super::Duration;
     use std::io;
     use std::sync::LazyLock;
+    use std::time::Duration;
     use std::time::Instant;
 
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
