@@ -40,7 +40,7 @@ pub struct Options {
     pub scans: Option<u64>,
     /// Nanoseconds between two scans, above zero; 10 ms, or the TASKs' intervals.
     pub cycle: Option<Time>,
-    /// Turns that the loops of one scan may take together; [`Context::TURNS`].
+    /// Turns that the loops of one scan may take together; [`Context::TURNS`](staunch_runtime::Context::TURNS).
     pub loop_budget: Option<u64>,
     pub stimulus: Option<PathBuf>,
     /// CSV, VCD, SVG or HTML by its ending; `-` is standard output.
