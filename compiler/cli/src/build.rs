@@ -38,7 +38,10 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
             let text = header::header(&runnable(session, args)?, &out, &session.first);
             output::write(&out, text.as_bytes())?;
         }
-        Emit::Systemd => output::write(&out, systemd::unit(&runnable(session, args)?, &out).as_bytes())?,
+        Emit::Systemd => {
+            let unit = systemd::unit(&runnable(session, args)?, crate::run::cycle(session, None)?, &out);
+            output::write(&out, unit.as_bytes())?;
+        }
         Emit::Obj | Emit::Lib | Emit::Exe => compile(&runnable(session, args)?, args, target, &out)?,
     }
     if out != Path::new("-") {

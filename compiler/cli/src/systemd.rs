@@ -1,5 +1,6 @@
 //! `--emit systemd`: a unit that runs an executable as a service, in real time.
 
+use staunch_host::DEFAULT_CYCLE;
 use staunch_ir::{Program, Retain};
 use std::path::Path;
 
@@ -8,20 +9,18 @@ const PRIORITY: u8 = 50;
 const SECOND: i64 = 1_000_000_000;
 /// Scans that may be missing before the service is ended.
 const SCANS: i64 = 10;
-/// Of a program without a TASK.
-const DEFAULT_CYCLE: i64 = 10_000_000;
 
-/// The unit of the executable of the same name.
-pub fn unit(program: &Program, out: &Path) -> String {
-    let name = out.file_stem().map_or("program".into(), |it| it.to_string_lossy());
-    let name = if name == "-" { "program".into() } else { name };
+/// The unit of the executable of the same name. `cycle` is the project's, which the executable does not know.
+pub fn unit(program: &Program, cycle: Option<i64>, out: &Path) -> String {
+    let name = name(out);
     let programs: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
     let programs = programs.join(", ");
     let retain = match has_retained(program) {
         true => format!(" --retain /var/lib/{name}/retained"),
         false => String::new(),
     };
-    let watchdog = seconds(program);
+    let given = cycle.map_or_else(String::new, |it| format!(" --cycle {it}ns"));
+    let watchdog = seconds(program, cycle);
     let (restart, priority) = (2 * watchdog, PRIORITY + 1);
     format!(
         "# The executable is /usr/local/bin/{name}, this file /etc/systemd/system/{name}.service. To start it, now and with the
@@ -35,7 +34,7 @@ After=local-fs.target
 [Service]
 # The program says when it has started, and that scans end.
 Type=notify
-ExecStart=/usr/local/bin/{name} --realtime --quiet --priority {PRIORITY} --watchdog {watchdog}s{retain}
+ExecStart=/usr/local/bin/{name} --realtime --quiet{given} --priority {PRIORITY} --watchdog {watchdog}s{retain}
 WatchdogSec={restart}
 # A program that has faulted (exit code 3) waits for somebody who looks at the machine.
 Restart=on-failure
@@ -57,13 +56,21 @@ WantedBy=multi-user.target
     )
 }
 
+/// The names of units, and of what systemd makes for them, have few characters.
+fn name(out: &Path) -> String {
+    let stem = out.file_stem().map_or("".into(), |it| it.to_string_lossy());
+    let kept = |it: char| if it.is_ascii_alphanumeric() || "_-.".contains(it) { it } else { '_' };
+    let name: String = stem.chars().map(kept).collect();
+    if name.trim_matches(['-', '.']).is_empty() { "program".to_owned() } else { name }
+}
+
 fn has_retained(program: &Program) -> bool {
     program.structs.iter().flat_map(|it| &it.fields).any(|it| it.retain == Retain::Kept)
 }
 
 /// How long no scan may end.
-fn seconds(program: &Program) -> i64 {
-    let periods = program.instances.iter().map(|it| it.interval.unwrap_or(DEFAULT_CYCLE));
-    let shortest = periods.min().unwrap_or(DEFAULT_CYCLE);
+fn seconds(program: &Program, cycle: Option<i64>) -> i64 {
+    let intervals = program.instances.iter().map(|it| it.interval.or(cycle).unwrap_or(DEFAULT_CYCLE));
+    let shortest = intervals.min().unwrap_or(DEFAULT_CYCLE);
     (shortest.saturating_mul(SCANS) / SECOND).max(1)
 }

@@ -61,6 +61,7 @@ pub use path::{Place, resolve as place_of};
 pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};
 pub use run::{Moment, Options, Summary, run};
+pub use schedule::DEFAULT_CYCLE;
 pub use start::Event;
 pub use value::{format_character, format_time, format_time_as, value_at};
 

@@ -4,7 +4,7 @@ use crate::map::Map;
 use staunch_runtime::Time;
 
 /// Time between scans where neither the command nor the source says one.
-const DEFAULT_CYCLE: Time = 10_000_000;
+pub const DEFAULT_CYCLE: Time = 10_000_000;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {

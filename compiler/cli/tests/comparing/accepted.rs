@@ -73,6 +73,21 @@ fn accepted_findings_do_not_fail() {
     assert!(!out.contains("Not accepted"), "{out}");
 }
 
+/// Which outputs follow is known when all else is accepted: until then, no line for an output is called needless.
+#[test]
+fn a_line_for_an_output_waits_for_the_others() {
+    let some = OWN.written("some.txt", "c 15: nobody reads it\nmotor output: it is not wired\n");
+    let output = OWN.output("waits", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &some]);
+    let (said, shown) = (text(&output.stderr), text(&output.stdout));
+    assert_eq!(output.status.code(), Some(1), "{shown}");
+    assert!(shown.contains("Not accepted: `d 15`."), "{shown}");
+    assert!(!said.contains("is accepted, but"), "{said}");
+    let other = OWN.written("other.txt", "c 15: not read\nd 15: same\nmotor output: not wired\nlamp output: not wired\n");
+    let output = OWN.output("other", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &other]);
+    let said = text(&output.stderr);
+    assert!(said.contains("other.txt:4: output of `lamp` is accepted, but does not exist"), "{said}");
+}
+
 /// Only what is accepted passes: the search continues past it, and compares what does not follow from it.
 #[test]
 fn what_is_not_accepted_fails() {

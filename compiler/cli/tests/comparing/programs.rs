@@ -110,8 +110,13 @@ impl Folder {
 
     /// The exit code, and what is printed of the verdict on a program.
     pub fn compare(self, name: &str, source: &str, arguments: &[&str]) -> (Option<i32>, String) {
-        let path = self.written(&format!("{name}.st"), source);
-        let output = command().arg(&path).args(arguments).output().expect("it starts");
+        let output = self.output(name, source, arguments);
         (output.status.code(), text(&output.stdout))
+    }
+
+    /// All that comes out.
+    pub fn output(self, name: &str, source: &str, arguments: &[&str]) -> Output {
+        let path = self.written(&format!("{name}.st"), source);
+        command().arg(&path).args(arguments).output().expect("it starts")
     }
 }

@@ -296,3 +296,20 @@ fn an_output_that_one_system_alone_has_is_not_passed_over() {
     let (code, text) = compare(&source, ("iec", "openplc"), &[]);
     assert!(code != Some(0) && !text.contains("are equal"), "{text}");
 }
+
+/// Where systems round in different ways, halves show it; where a number is made a text, the texts of the program do.
+#[test]
+fn conversions_are_tried_where_they_differ() {
+    let asked = [
+        ("rounded.st", "x : REAL", "n : INT", "n := REAL_TO_INT(x);", "openplc4"),
+        ("cut.st", "x : LREAL", "n : INT", "n := LREAL_TO_INT(x);", "logix"),
+        ("written.st", "x : INT", "b : BOOL", "b := INT_TO_STRING(x) = '5';", "siemens"),
+    ];
+    for (name, input, output, statement, to) in asked {
+        let text = format!(
+            "PROGRAM p\nVAR_INPUT {input}; END_VAR\nVAR_OUTPUT {output}; END_VAR\n{statement}\nEND_PROGRAM\n"
+        );
+        let (code, text) = compare(&OWN.written(name, &text), ("iec", to), &[]);
+        assert!(code == Some(1) && text.contains("differ after 1 scan"), "{name}: {text}");
+    }
+}

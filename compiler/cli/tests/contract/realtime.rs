@@ -222,4 +222,10 @@ CONFIGURATION c RESOURCE r ON cpu TASK t(INTERVAL := T#500ms, PRIORITY := 1); PR
     let unit = folder.read("press.service");
     has(&unit, &["--watchdog 5s --retain /var/lib/press/retained\n", "StateDirectory=press", "WatchdogSec=10"]);
     has(&unit, &["Description=Press"]);
+    folder.write("staunch.toml", "cycle = \"500ms\"\n");
+    let written = folder.command("build main.st --emit systemd -q -o").arg("my plant.service").status().unwrap();
+    assert!(written.success());
+    let unit = folder.read("my plant.service");
+    has(&unit, &["ExecStart=/usr/local/bin/my_plant --realtime --quiet --cycle 500000000ns ", "--watchdog 5s\n"]);
+    has(&unit, &["StateDirectory=my_plant\n"]);
 }

@@ -8,6 +8,7 @@ use super::method::is_this;
 use super::operand::Operand;
 use super::operator::Sides;
 use super::place::{Access, Found};
+use super::unresolved::not_constant;
 use crate::names::{Entry, Found as Meant, Meaning, Sense};
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
@@ -90,6 +91,11 @@ impl<'s> Checker<'_, 's> {
         };
         if self.decl.interface_of(found.place.ty).is_some() {
             self.report_interface(found.place.ty, "`^` needs a reference", span);
+            return None;
+        }
+        if self.signature.is_none() {
+            // Where it points, and with what type there, is known when the program runs.
+            self.report(not_constant(span));
             return None;
         }
         let Type::Reference(id) = found.place.ty else {

@@ -285,7 +285,7 @@ fn of_fields<'s>(
         let member = Expr { kind: ExprKind::Member(Box::new(target.clone()), name), span: name.span };
         match initial.kind {
             InitialKind::Value(value) if expected.is_property(name) => {
-                found.compute(member, value, When::After);
+                found.compute(member, value, expected.when_property());
                 None
             }
             _ => Some((name, rest(initial, &member, expected.member(name), found)?)),

@@ -40,6 +40,8 @@ impl<'s> Owner<'s> {
 #[derive(Default)]
 pub(super) struct Computed<'s> {
     functions: FxHashSet<Key<'s>>,
+    /// PROGRAMs, whose variables others may name.
+    programs: FxHashSet<Key<'s>>,
     methods: FxHashSet<Key<'s>>,
     getters: FxHashSet<Key<'s>>,
     /// Of each class, the PROPERTYs that can be assigned.
@@ -93,6 +95,9 @@ impl<'s> Computed<'s> {
             Item::Pou(pou) => {
                 if pou.kind == PouKind::Function && pou.external.is_none() {
                     self.functions.insert(Key(pou.name.text));
+                }
+                if pou.kind == PouKind::Program {
+                    self.programs.insert(Key(pou.name.text));
                 }
                 let own = self.own.entry(Key(pou.name.text)).or_default();
                 pou.blocks.iter().for_each(|it| own.add(it));
@@ -211,6 +216,7 @@ impl<'s> Computed<'s> {
     fn when_named(&self, name: Key<'s>, pou: Option<Key<'s>>) -> Option<When> {
         match pou.and_then(|it| self.own.get(&it)).filter(|it| it.names.contains(&name)) {
             Some(own) => own.when(name),
+            None if self.programs.contains(&name) && !self.globals.names.contains(&name) => Some(When::After),
             // Global variables start with the instances of a POU.
             None => self.globals.when(name).map(|when| if pou.is_some() { When::After } else { when }),
         }

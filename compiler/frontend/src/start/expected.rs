@@ -149,6 +149,14 @@ impl<'a, 's> Expected<'a, 's> {
         has_start && path.last().is_some_and(|it| self.types.computed.is_property(Key(it.text), Key(name.text)))
     }
 
+    /// When a PROPERTY is assigned: what lives for one call gets its values one after the other.
+    pub fn when_property(&self) -> When {
+        match self.owner {
+            Owner::Globals | Owner::Pou(_) => When::After,
+            Owner::Other => When::Before,
+        }
+    }
+
     /// The type with the names of others resolved.
     fn kind(&self) -> Option<&'a TypeKind<'s>> {
         let mut ty = self.ty?;

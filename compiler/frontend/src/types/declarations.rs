@@ -621,7 +621,16 @@ impl<'s> Declarations<'s> {
                     .label("a program does not know the machine that runs it"),
             );
         }
-        if let Some((slot, declared)) = self.routines_on(ty, name.text).and_then(|it| it.called) {
+        let routines = self.routines_on(ty, name.text);
+        if let Some((_, declared)) = routines.and_then(|it| it.setter.or(it.getter)) {
+            return self.report(
+                Diagnostic::new(Code::E0107, name.span, format!("the PROPERTY `{}` is no variable", name.text))
+                    .label("nothing can call its SET here")
+                    .other(declared, "declared here")
+                    .help("give it a value where a variable of the type is declared, or assign it before it is used"),
+            );
+        }
+        if let Some((slot, declared)) = routines.and_then(|it| it.called) {
             let kind = crate::diagnostic::wording::article(self.pous[slot].ast.kind.word());
             return self.report(
                 Diagnostic::new(

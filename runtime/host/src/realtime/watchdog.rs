@@ -51,8 +51,10 @@ impl Watchdog {
         let period = (shortest / 4).max(SHORTEST);
         let watch = Watch { shared: shared.clone(), limit, device, manager, period };
         let thread = std::thread::Builder::new().name("watchdog".to_owned()).spawn(move || {
-            // The scans' own priority was taken: a higher one can be as well.
-            let _ = priority.map(|it| take_priority(it.saturating_add(1)));
+            let higher = priority.map(|it| it.saturating_add(1));
+            if let Some(Err(error)) = higher.map(take_priority) {
+                warn(higher.unwrap_or_default(), &error);
+            }
             watch.run();
         })?;
         Ok(Some(Self { shared, thread: Some(thread) }))
@@ -98,6 +100,14 @@ impl Watch {
     fn tell(&self, state: &str) {
         self.manager.iter().for_each(|it| it.tell(state));
     }
+}
+
+/// The scans' own priority was taken, so a limit is one too low for this thread.
+fn warn(priority: u8, error: &io::Error) {
+    let text = format!(
+        "warning: watchdog: it has no priority above that of the scans, so it cannot end a program whose scan does not: {error}\nhelp: allow priority {priority} as well: `ulimit -r {priority}`, or `LimitRTPRIO={priority}` in a unit of systemd\n"
+    );
+    let _ = io::stderr().write_all(text.as_bytes());
 }
 
 /// The scans may hold any lock: nothing is waited for, and nothing runs at the end.

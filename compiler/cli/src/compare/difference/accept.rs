@@ -93,6 +93,11 @@ impl Line {
         self.subject.eq_ignore_ascii_case(path)
     }
 
+    /// Whether it accepts findings of a kind, and no trap.
+    pub fn is_of(&self, kind: Kind) -> bool {
+        self.what == What::Kind(kind.name())
+    }
+
     pub fn takes(&self, kind: Kind, subject: &str, pitfall: Option<Pitfall>) -> bool {
         let subject = match kind == Kind::Output {
             true => is_in(subject, &self.subject),

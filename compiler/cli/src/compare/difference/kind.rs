@@ -9,7 +9,7 @@ pub enum Kind {
     Timer,
     OneShot,
     Latch,
-    /// A variable that the two systems compute in other types.
+    /// A variable that the two systems compute by other rules, or in other types.
     Width,
     /// A variable at an address whose bits others share on one of the two alone, or that is computed of one.
     Address,
@@ -57,7 +57,7 @@ impl Kind {
         match self {
             Self::Counter => "its inputs differ, or no trap explains it",
             Self::Timer | Self::OneShot | Self::Latch => "the inputs of the block differ",
-            Self::Width => "the two systems compute or store it in different types",
+            Self::Width => "the two systems compute it by different rules, or in different types",
             Self::Address => "only one of the two systems shares the bits at an address",
             Self::Retention => "only one system keeps it",
             Self::Fault => "one system faults here, and the other continues",

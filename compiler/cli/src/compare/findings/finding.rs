@@ -45,6 +45,8 @@ pub struct Findings {
     pub all: Vec<Finding>,
     /// Where in `all` those are that are of no counter.
     others: HashMap<Subject, usize>,
+    /// Which outputs follow from accepted findings is known: the search went on past those, or found nothing at all.
+    pub has_all_outputs: bool,
 }
 
 impl Findings {
@@ -66,7 +68,7 @@ impl Findings {
                 all.push(Finding { kind, subject, at: None, pitfall: Some(pitfall), because: None, verdict });
             }
         }
-        let mut found = Self { all, others: HashMap::new() };
+        let mut found = Self { all, others: HashMap::new(), has_all_outputs: false };
         found.add_others(pair, world);
         found
     }
@@ -97,6 +99,7 @@ impl Findings {
         for finding in &mut self.all {
             finding.verdict = Verdict::Impossible(why.to_owned());
         }
+        self.has_all_outputs = true;
     }
 
     /// Whether anything can be reached that is not accepted.
@@ -108,6 +111,9 @@ impl Findings {
     pub fn stale(&self, accepted: &Accepted) -> Vec<String> {
         let is_of = |it: &Finding, line: &Line| line.takes(it.kind, &it.subject, it.pitfall);
         let stale = |line: &&Line| {
+            if line.is_of(Kind::Output) && !self.has_all_outputs {
+                return false;
+            }
             let open = |it: &&Finding| is_of(it, line) && !matches!(it.verdict, Verdict::Impossible(_));
             !self.all.iter().any(|it| open(&it))
         };

@@ -358,6 +358,9 @@ fn integers(repr: Repr, Range { low, high, step }: Range, ty: Type, near: &Numbe
     (found.into_iter().filter_map(|it| repr.integer(it)).collect(), whole)
 }
 
+/// Halves, which systems round in different ways, and what an INT does not hold.
+const ROUNDED: [f64; 3] = [2.5, -1.5, 40_000.0];
+
 fn reals(repr: Repr, near: &Numbers) -> Vec<Value> {
     let mut found = Vec::new();
     for (at, limit) in near.reals.iter().enumerate() {
@@ -366,6 +369,7 @@ fn reals(repr: Repr, near: &Numbers) -> Vec<Value> {
         found.extend(between);
     }
     found.extend([0.0, 1.0, -1.0]);
+    found.extend(ROUNDED);
     found.truncate(MAX_VALUES);
     let value = |it: f64| match repr {
         Repr::F32 => narrowed(it).map(Value::F32),

@@ -28,6 +28,7 @@ pub fn judge(pair: &mut Pair, world: &World, args: &Compare, findings: &mut Find
         return Ok(differs(pair, world, &trace, shortest, findings));
     }
     if outcome.complete && exact {
+        findings.has_all_outputs = true;
         return Ok(Verdict::Equal(scope::every_state(pair, world, &outcome)));
     }
     Ok(scope::not_found(pair, world, &outcome))
@@ -53,6 +54,7 @@ pub fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings:
         findings.outputs(pair, &outputs, trace);
         return differs(pair, world, trace, false, findings);
     }
+    findings.has_all_outputs = true;
     let is_told_apart = world.tolerance.as_ref().is_none_or(|it| it.beside.is_empty());
     if outcome.complete && covers_all(pair, world, args) && is_told_apart {
         return Verdict::Equal(scope::every_state(pair, world, &outcome) + &scope::passed_over(pair, world));

@@ -461,6 +461,7 @@ impl Choice for CaseSelector {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeUnit {
     Nanoseconds,
+    SecondsAndNanoseconds,
     Milliseconds,
     SignedMilliseconds,
 }
@@ -471,6 +472,9 @@ impl Choice for TimeUnit {
     fn words(self) -> &'static str {
         match self {
             Self::Nanoseconds => "64 bits of nanoseconds with a sign",
+            Self::SecondsAndNanoseconds => {
+                "32 bits of seconds with a sign, and nanoseconds: `T#24855d + T#1d` is `T#-24854d6h28m16s`"
+            }
             Self::Milliseconds => {
                 "32 bits of milliseconds without a sign: `T#0ms - T#1ms` is `T#49d17h2m47s295ms`, `T#5ms / 2` is `T#2ms`"
             }

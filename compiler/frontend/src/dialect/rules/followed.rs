@@ -5,7 +5,7 @@ use super::choice::{
     LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
     RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
-use staunch_runtime::time::MILLISECOND;
+use staunch_runtime::time::{MILLISECOND, SECOND};
 use staunch_runtime::{Elementary, Value};
 
 /// How one dialect computes.
@@ -161,18 +161,21 @@ impl Rules {
 
     /// The least and the greatest duration of a type, in nanoseconds.
     pub fn limits(&self, duration: Elementary) -> Option<(i128, i128)> {
-        let (counted, unit) = match (duration, self.milliseconds()) {
-            (Elementary::Time, Some(count)) => (count, i128::from(MILLISECOND)),
-            _ => (duration, 1),
+        let (counted, unit, parts) = match (duration, self.time_unit.choice) {
+            (Elementary::Time, TimeUnit::SecondsAndNanoseconds) => (Elementary::Dint, SECOND, SECOND - 1),
+            (Elementary::Time, TimeUnit::Milliseconds | TimeUnit::SignedMilliseconds) => {
+                (self.milliseconds()?, MILLISECOND, 0)
+            }
+            _ => (duration, 1, 0),
         };
         let (least, greatest) = counted.repr().range()?;
-        Some((least * unit, greatest * unit))
+        Some((least * i128::from(unit), greatest * i128::from(unit) + i128::from(parts)))
     }
 
     /// The integer type whose number of milliseconds a TIME is, where it is not of nanoseconds.
     pub const fn milliseconds(&self) -> Option<Elementary> {
         match self.time_unit.choice {
-            TimeUnit::Nanoseconds => None,
+            TimeUnit::Nanoseconds | TimeUnit::SecondsAndNanoseconds => None,
             TimeUnit::Milliseconds => Some(Elementary::Udint),
             TimeUnit::SignedMilliseconds => Some(Elementary::Dint),
         }

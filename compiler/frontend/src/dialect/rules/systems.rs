@@ -109,6 +109,7 @@ pub(super) const OPENPLC: Rules = Rules {
     bits_to_bool: follows(ToBool::NotZero, MATIEC),
     modulo_by_zero: follows(ByZero::GivesZero, MATIEC),
     time_as_number: follows(TimeAsNumber::Seconds, MATIEC),
+    time_unit: follows(TimeUnit::SecondsAndNanoseconds, MATIEC),
     limit_crossed: follows(LimitCrossed::Minimum, MATIEC),
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),

@@ -6,6 +6,16 @@ use crate::compare::program::walked::Name;
 use staunch_ir::{Chars, Const, FieldId, Program, Type, Value};
 use std::collections::{BTreeSet, HashMap, HashSet};
 
+/// Texts that may be those of numbers.
+const MOST_TEXTS: usize = 16;
+
+/// The number that a text is: `INT_TO_STRING(n) = '5'` compares `n` with it.
+fn spelled(text: &Chars) -> Option<Value> {
+    let Chars::Narrow(letters) = text else { return None };
+    let text = std::str::from_utf8(letters).ok()?.trim();
+    text.parse().map(Value::I64).or_else(|_| text.parse().map(Value::F64)).ok()
+}
+
 /// What statements say of variables, by their declarations.
 #[derive(Debug, Default)]
 pub struct Facts {
@@ -43,6 +53,9 @@ impl Facts {
     pub fn worth_trying(&self, name: Name) -> Numbers {
         let mut found = self.near(name);
         found.add_all(self.hints.get(&name).cloned().unwrap_or_default());
+        if !self.only_compared(name) {
+            self.all_texts.iter().take(MOST_TEXTS).filter_map(spelled).for_each(|it| found.add(it));
+        }
         found
     }
 
