@@ -48,8 +48,8 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
 /// The PROGRAMs that some body may name, in small letters: those of a library are called then, or their METHODs are.
 fn programs_named(files: &[File<'_>]) -> FxHashSet<String> {
     let pous = || files.iter().flat_map(|it| &it.items).filter_map(pou);
-    let mut left: FxHashSet<_> =
-        pous().filter(|it| it.kind == PouKind::Program).map(|it| it.name.text.to_ascii_lowercase()).collect();
+    let programs = pous().filter(|it| it.kind == PouKind::Program);
+    let mut left: FxHashSet<_> = programs.map(|it| Key(it.name.text)).collect();
     let mut named = FxHashSet::default();
     if left.is_empty() {
         return named;
@@ -57,7 +57,7 @@ fn programs_named(files: &[File<'_>]) -> FxHashSet<String> {
     for pou in pous().flat_map(|it| std::iter::once(it).chain(&it.routines)) {
         each_expr(&pou.body, &mut |it| {
             if let ExprKind::Name(name) | ExprKind::Member(_, name) = &it.kind {
-                named.extend(left.take(&name.text.to_ascii_lowercase()));
+                named.extend(left.take(&Key(name.text)).map(|it| it.0.to_ascii_lowercase()));
             }
         });
     }

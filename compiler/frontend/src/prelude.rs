@@ -405,12 +405,17 @@ static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| 
     found
 });
 
-/// The lengths of units' names, and of what else asks for one, by their first letters: most words of a program are
+/// The names of units, or what they begin with, and what else asks for one.
+static ASKING: LazyLock<FxHashSet<Key<'static>>> = LazyLock::new(|| {
+    let own = UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.'));
+    own.chain([SYSTEM]).chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
+});
+
+/// The lengths of these, by their first letters: most words of a program are
 /// passed over by these.
 static LENGTHS: LazyLock<[u32; 32]> = LazyLock::new(|| {
     let mut lengths = [0; 32];
-    let own = UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.'));
-    for name in own.chain([SYSTEM]).chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())) {
+    for Key(name) in ASKING.iter() {
         if let Some(lengths) = name.bytes().next().and_then(|it| lengths.get_mut(place_of(it))) {
             *lengths |= 1 << name.len();
         }
@@ -777,27 +782,40 @@ fn dialect_of(tokens: &Tokens<'_>, options: &Options) -> Dialect {
 
 /// Whether a text has a word that is a unit's name.
 fn mentions_any(text: &str) -> bool {
-    let is_word = |byte: u8| byte.is_ascii_alphanumeric() || byte == b'_';
+    let lengths = &*LENGTHS;
     let bytes = text.as_bytes();
     let mut at = 0;
     while let Some(first) = bytes.get(at) {
+        let start = at;
+        at += 1;
         if !is_word(*first) {
-            at += 1;
             continue;
         }
-        let length = bytes[at..].iter().take_while(|it| is_word(**it)).count();
-        let lengths = LENGTHS.get(place_of(*first)).copied().unwrap_or(0);
-        if length < 32 && lengths & (1 << length) != 0 && text.get(at..at + length).is_some_and(may_name) {
+        while bytes.get(at).is_some_and(|it| is_word(*it)) {
+            at += 1;
+        }
+        let length = at - start;
+        let known = lengths.get(place_of(*first)).copied().unwrap_or(0);
+        if length < 32 && known & (1 << length) != 0 && text.get(start..at).is_some_and(|it| ASKING.contains(&Key(it)))
+        {
             return true;
         }
-        at += length;
     }
     false
 }
 
-/// Whether a word may be a unit's name, or what its name begins with.
-fn may_name(word: &str) -> bool {
-    is_system(word) || units(word).next().is_some() || is_of_any(word) || is_generic(word)
+/// By a table: each character of a program is looked at.
+fn is_word(byte: u8) -> bool {
+    const WORD: [bool; 256] = {
+        let mut word = [false; 256];
+        let mut at = 0;
+        while at < 128 {
+            word[at] = (at as u8).is_ascii_alphanumeric() || at as u8 == b'_';
+            at += 1;
+        }
+        word
+    };
+    WORD[usize::from(byte)]
 }
 
 /// ANY, ANY_INT and the like.

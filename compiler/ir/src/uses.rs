@@ -40,10 +40,16 @@ pub enum Part {
     PartsOfMillisecond,
     /// A number with a fraction that a REAL does not hold exactly, in an operation with a REAL.
     FractionBesideReal,
+    /// A shift by a negative number, or by as many bits as C shifts in, or more.
+    ShiftPastWidth,
+    /// A result beyond a signed type of 32 or 64 bits, where that decides something.
+    Overflow,
+    /// An index outside of its array that is reached. No program notes it.
+    Index,
 }
 
 impl Part {
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 12] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -53,6 +59,9 @@ impl Part {
         Self::ComparedTimes,
         Self::PartsOfMillisecond,
         Self::FractionBesideReal,
+        Self::ShiftPastWidth,
+        Self::Overflow,
+        Self::Index,
     ];
 
     /// In words, for tables and messages.
@@ -67,6 +76,9 @@ impl Part {
             Self::ComparedTimes => "a comparison of TIMEs",
             Self::PartsOfMillisecond => "a timer, with scans that are not a whole number of milliseconds apart",
             Self::FractionBesideReal => "a number with a fraction in an operation with a REAL",
+            Self::ShiftPastWidth => "a shift past the width",
+            Self::Overflow => "signed overflow",
+            Self::Index => "an index outside of its array",
         }
     }
 }

@@ -162,8 +162,11 @@ impl Elementary {
 
     /// Finds a type by its keyword, in any case.
     pub fn named(name: &str) -> Option<Self> {
-        let short = || Self::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(name));
-        let long = || LONG_NAMES.into_iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1);
+        // Most names differ in their first letter or their length.
+        let first = name.as_bytes().first()?.to_ascii_uppercase();
+        let is_it = |own: &str| own.len() == name.len() && own.as_bytes()[0] == first && own.eq_ignore_ascii_case(name);
+        let short = || Self::ALL.iter().copied().find(|it| is_it(it.name()));
+        let long = || LONG_NAMES.iter().find(|it| is_it(it.0)).map(|it| it.1);
         short().or_else(long)
     }
 

@@ -32,13 +32,13 @@ use difference::pitfall;
 use findings::finding::Findings;
 use other::{fixed, logix, migrated, missing, renamed};
 use pair::{Pair, Side};
-use program::usage;
 use report::{Report, picture, rejection};
 use search::tolerance::Tolerance;
 use search::world::World;
 use staunch_frontend::Dialect;
-use staunch_frontend::rules::{Part, otherwise};
 use staunch_ir::Program;
+use staunch_ir::effects::{Rules, effects};
+use staunch_ir::faults::code_faults;
 use variants::Variant;
 use verdict::{Judged, Other, Verdict, WithoutRun, judge};
 
@@ -149,7 +149,7 @@ fn side_by_side(
 ) -> Result<Compared, String> {
     let args = report.args;
     let cycle = run::cycle(report.session, args.cycle.as_deref())?;
-    let same_program = !may_end_otherwise(args, &program) && is_same(&program, &moved);
+    let same_program = !may_fault(&program) && is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
     pair.is_ported = !report.notes.is_empty();
@@ -187,11 +187,10 @@ fn side_by_side(
     Ok(Compared { pair, world, findings, accepted, verdict, rest, without_run })
 }
 
-/// Whether one program may continue, on only one of the systems, where it ends with a fault here.
-fn may_end_otherwise(args: &Compare, program: &Program) -> bool {
-    let [from, to] = [args.from.dialect, args.to.dialect];
-    let differs = |part| otherwise(from, part).map(|it| it.what) != otherwise(to, part).map(|it| it.what);
-    differs(Part::Subrange) && !program.bounds.is_empty() || differs(Part::DivisionByZero) && usage::divides(program)
+/// Whether the program may end with a fault here: what the systems do there is not known to be the same.
+fn may_fault(program: &Program) -> bool {
+    let rules = Rules { operation_faults: code_faults, drops_checks: true, ..Rules::PLAIN };
+    effects(program, &rules).iter().any(|it| it.faults)
 }
 
 /// Everything to compare must exist on both sides: otherwise it would be silently ignored.

@@ -226,7 +226,8 @@ END_PROGRAM
     }
     let (code, text) =
         OWN.compare("subrange", source, &["--from", "iec", "--to", "cscape", "--vars", "o", "--assume", &assumed]);
-    assert_eq!(code, Some(0), "{text}");
+    assert_eq!(code, Some(4), "{text}");
+    assert!(text.contains("a fault that ends both programs here, value outside its subrange in line 5"), "{text}");
 }
 
 /// An integer divided by 0 ends a program on x86, and is 0 on ARM of 64 bits ("SDIV"); CODESYS leaves it to the target (its
@@ -248,5 +249,49 @@ END_PROGRAM
         assert!(text.contains("a fault that ends both programs here, division by zero in line 4; "), "{text}");
         let (code, text) = OWN.compare("guarded", &guarded, &arguments);
         assert_eq!(code, Some(0), "{text}");
+    }
+}
+
+/// What a system leaves undefined, or does otherwise, is never called equal: neither where both sides are one program.
+#[test]
+fn what_a_system_does_otherwise_is_not_equal() {
+    let asked = [
+        ("limit", "openplc", "i : USINT", "q := 0; FOR i := 250 TO k DO q := q + 1; END_FOR;", "the loop does not end"),
+        ("index", "openplc", "a : ARRAY[0..3] OF DINT", "a[n] := 5; q := a[2];", "it is not checked"),
+        ("shift", "openplc4", "w : DWORD", "w := SHR(DWORD#16#FFFF, n); q := DWORD_TO_DINT(w);", "past the width"),
+        ("sum", "openplc", "b : BOOL", "b := n + 1 > n; IF b THEN q := 1; ELSE q := 0; END_IF", "signed overflow"),
+        ("quotient", "openplc", "b : BOOL", "b := n = 0; q := n / SEL(b, DINT#1, DINT#-1);", "signed overflow"),
+        (
+            "moved",
+            "siemens",
+            "t : TON",
+            "IF n > 0 THEN t.PT := T#50ms; ELSE t.PT := T#20ms; END_IF t(IN := n > 1);",
+            "PT that moves",
+        ),
+        (
+            "moved_by_calls",
+            "siemens",
+            "t : TON",
+            "IF n > 0 THEN t(PT := T#50ms); ELSE t(PT := T#20ms); END_IF",
+            "PT that moves",
+        ),
+    ];
+    for (name, to, declared, body, why) in asked {
+        let source = format!(
+            "PROGRAM p\nVAR_INPUT n : DINT; k : USINT; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR {declared}; END_VAR\n{body}\nEND_PROGRAM\n"
+        );
+        let (code, text) = OWN.compare(name, &source, &["--from", "iec", "--to", to, "-A", "warnings"]);
+        assert!(code == Some(4) && text.contains(why), "{name}: {text}");
+    }
+    // A limit that leaves the counter values is none, nor is one PT that every call gives.
+    let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i : INT; t : TON; END_VAR\n";
+    let bodies = [
+        ("openplc4", "q := 0; FOR i := 0 TO k DO q := q + 1; END_FOR"),
+        ("siemens", "IF b THEN t(IN := b, PT := T#20ms); ELSE t(IN := FALSE); END_IF"),
+    ];
+    for (to, body) in bodies {
+        let source = format!("{same}{body}\nEND_PROGRAM\n");
+        let (code, text) = OWN.compare("same", &source, &["--from", "iec", "--to", to, "-A", "warnings"]);
+        assert!(code == Some(0), "{to}: {text}");
     }
 }

@@ -4,10 +4,13 @@
 use super::assertion::Claim;
 use crate::expr::checker::Checker;
 use crate::names::{Entry, Found, Meaning, Sense};
+use crate::spelling::Key;
 use crate::testing::exchange;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp};
+use rustc_hash::FxHashSet;
 use staunch_ir::{Elementary, Expr, Op, Type, Value};
+use std::sync::LazyLock;
 
 /// What an assertion compares: its parameters, and how. The first parameter is on the left of the operator.
 struct Comparison {
@@ -30,6 +33,11 @@ const SUCCEED: &str = "AxUnit.ResultFunctions.axunit_Succeed";
 const FAIL: &str = "AxUnit.ResultFunctions.axunit_Fail";
 /// Lets something run in place of another.
 const MOCK: &str = "AxUnit.Mocking.Mock";
+/// The last parts of all these: most calls are of none.
+static NAMES: LazyLock<FxHashSet<Key<'static>>> = LazyLock::new(|| {
+    let all = COMPARISONS.iter().map(|it| it.name).chain([SUCCEED, FAIL, MOCK]);
+    all.filter_map(|it| it.rsplit('.').next()).map(Key).collect()
+});
 /// Where these are declared.
 const LIBRARIES: [&str; 2] = ["library/axunit.st", "library/axunit.mocking.st"];
 
@@ -74,12 +82,11 @@ impl<'s> Checker<'_, 's> {
 
     /// The FUNCTION, found by the first one with its name, which may be a project's own.
     fn axunit_callee(&self, callee: &ast::Expr<'s>) -> Option<usize> {
-        let path = callee.path()?;
-        let is_one =
-            |it: &str| it.rsplit('.').next().is_some_and(|it| it.eq_ignore_ascii_case(path[path.len() - 1].text));
-        if !COMPARISONS.iter().map(|it| it.name).chain([SUCCEED, FAIL, MOCK]).any(is_one) {
+        let (ast::ExprKind::Name(last) | ast::ExprKind::Member(_, last)) = &callee.kind else { return None };
+        if !NAMES.contains(&Key(last.text)) {
             return None;
         }
+        let path = callee.path()?;
         let first = path[0];
         if self.scope.get(first.text).is_some() || path.len() == 1 && self.own_routine(first).is_some() {
             return None;

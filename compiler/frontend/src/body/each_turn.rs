@@ -5,13 +5,17 @@ use crate::dialect::rules::LoopLimit;
 use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::{Span, ast};
-use staunch_ir::{Block, Expr, For, Op, Statement, StatementKind, Step, Type, Value, alias, turns};
+use staunch_ir::{Block, Conversion, Expr, For, Op, Statement, StatementKind, Step, Type, Value, alias, turns};
 
 /// What the limit and the step of a FOR do before their values are known, in each turn.
 #[derive(Debug, Default)]
 pub(super) struct Calls {
     pub limit: Block,
     pub step: Block,
+    /// The limit as it is computed, where that is a number which the counter's type may not hold.
+    pub wide_limit: Option<Expr>,
+    /// So too the step, whose sign counts.
+    pub wide_step: Option<Expr>,
 }
 
 impl<'s> Checker<'_, 's> {
@@ -32,7 +36,8 @@ impl<'s> Checker<'_, 's> {
         let calls = !calls.limit.is_empty() || !calls.step.is_empty();
         match rule {
             LoopLimit::Once => false,
-            LoopLimit::EachTurn => calls || changes(&head.last) || step_changes,
+            // A step of 0 is no fault there.
+            LoopLimit::EachTurn => calls || changes(&head.last) || matches!(head.step, Step::Variable(_)),
             LoopLimit::EachTurnUpward => calls || changes(&head.last) || step_changes || !has_known_sign(head, by),
         }
     }
@@ -47,12 +52,15 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<()> {
         let at = self.at(span);
         let is_upward = self.decl.dialect(span).rules().loop_limit.choice == LoopLimit::EachTurnUpward;
-        let goes_up =
-            if is_upward && !has_known_sign(&head, by) { Expr::bool(true, at) } else { self.goes_up(&head, span)? };
+        let goes_up = if is_upward && !has_known_sign(&head, by) {
+            Expr::bool(true, at)
+        } else {
+            self.goes_up(&head, calls.wide_step.as_ref(), span)?
+        };
         // The sign of a step is looked at before the limit; STruC++ goes by the text alone.
         let mut body = if is_upward { Block::new() } else { calls.step.clone() };
         body.extend(calls.limit);
-        body.push(self.leave_at_limit(&head, goes_up, span)?);
+        body.push(self.leave_at_limit(&head, calls.wide_limit.as_ref(), goes_up, span)?);
         let turn = body.len();
         let mut continuing = calls.step;
         continuing.push(self.next_turn(&head, span)?);
@@ -66,11 +74,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether the step is above 0.
-    fn goes_up(&mut self, head: &For, span: Span) -> Option<Expr> {
-        let ty = head.counter.ty;
+    fn goes_up(&mut self, head: &For, wide: Option<&Expr>, span: Span) -> Option<Expr> {
         match &head.step {
             Step::Constant(step) => Some(Expr::bool(*step > 0, self.at(span))),
             Step::Variable(step) => {
+                let step = wide.unwrap_or(step);
+                let ty = step.ty;
                 let zero = self.coerce(Operand::Integer(0), ty, span)?;
                 self.apply(Op::Gt, ty, vec![step.clone(), zero], Type::BOOL, span)
             }
@@ -78,11 +87,11 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Leaves the loop where the counter is beyond the limit.
-    fn leave_at_limit(&mut self, head: &For, goes_up: Expr, span: Span) -> Option<Statement> {
-        let (at, ty) = (self.at(span), head.counter.ty);
+    fn leave_at_limit(&mut self, head: &For, wide: Option<&Expr>, goes_up: Expr, span: Span) -> Option<Statement> {
+        let at = self.at(span);
         let mut leave = |stays: Op| -> Option<Statement> {
             let count = Expr::load(head.counter.clone(), at);
-            let stays = self.apply(stays, ty, vec![count, head.last.clone()], Type::BOOL, span)?;
+            let stays = self.is_before_limit(stays, count, wide.unwrap_or(&head.last), span)?;
             let ends = self.apply(Op::Not, Type::BOOL, vec![stays], Type::BOOL, span)?;
             let then = vec![Statement::new(StatementKind::Exit, at)];
             Some(Statement::new(StatementKind::If { condition: ends, then, otherwise: Vec::new() }, at))
@@ -95,6 +104,12 @@ impl<'s> Checker<'_, 's> {
                 Some(Statement::new(StatementKind::If { condition: goes_up, then, otherwise }, at))
             }
         }
+    }
+
+    /// Compares a value of the counter with the limit, at the limit's type.
+    pub(super) fn is_before_limit(&mut self, op: Op, count: Expr, limit: &Expr, span: Span) -> Option<Expr> {
+        let count = if count.ty == limit.ty { count } else { self.convert(Conversion::Value, limit.ty, count) };
+        self.apply(op, limit.ty, vec![count, limit.clone()], Type::BOOL, span)
     }
 
     /// Adds the step to the counter.

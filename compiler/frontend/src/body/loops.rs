@@ -4,7 +4,7 @@ use super::each_turn::Calls;
 use crate::diagnostic::wording::article;
 use crate::dialect::rules::{Part, Use, is_followed};
 use crate::expr::checker::Checker;
-use crate::expr::operand::Operand;
+use crate::expr::operand::{Operand, stored};
 use crate::types::counter::{Counter, Shown};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
@@ -102,8 +102,7 @@ impl<'s> Checker<'_, 's> {
         }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
         let local = head.counter.clone();
-        let made = head.statement(self.at(span));
-        self.push(made.kind, span);
+        self.loop_to(head, calls.wide_limit, span)?;
         if let Some(shown) = &shown {
             self.show_counter(shown, &local, counter.span);
         }
@@ -157,14 +156,17 @@ impl<'s> Checker<'_, 's> {
             first = Some(Expr::load(place.clone(), self.at(from.span)));
         }
         let mark = self.block.len();
-        let mut last = self.value(to, place.ty.read());
+        let (mut last, wide_limit) = self.value_and_wide(to, place.ty.read());
         let after_limit = self.block.len();
         let is_each_turn = shown.is_none() && self.calls_in_each_turn(to.span);
+        let mut calls = Calls { wide_limit, ..Calls::default() };
         let step = match is_each_turn {
-            true => self.step(by, ty),
-            false => self.after(&mut last.iter_mut().collect::<Vec<_>>(), |this| this.step(by, ty)),
+            true => self.step(by, ty, &mut calls.wide_step),
+            false => {
+                let limits = &mut last.iter_mut().chain(&mut calls.wide_limit).collect::<Vec<_>>();
+                self.after(limits, |this| this.step(by, ty, &mut None))
+            }
         };
-        let mut calls = Calls::default();
         if is_each_turn {
             calls.step = self.block.split_off(after_limit);
             calls.limit = self.block.split_off(mark);
@@ -189,11 +191,7 @@ impl<'s> Checker<'_, 's> {
         }
         let range = self.decl.program.range(place.ty).or(ty.repr().range())?;
         let step_at = self.at(by.unwrap_or(counter).span);
-        if let (Step::Constant(step), Some(limit)) = (&step, last.as_const().and_then(Value::as_integer))
-            && !(range.0..=range.1).contains(&(limit + step))
-        {
-            self.note_endless(to, ty);
-        }
+        self.note_endless(&step, calls.wide_limit.as_ref().unwrap_or(&last), range, (to, ty));
         let (body, taking) = (Block::new(), Taking::Each);
         let head = For { counter: place, first, last, step, range, is_private: false, body, taking, step_at };
         Some((head, shown, calls))
@@ -218,11 +216,22 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// A FOR whose counter has no value beyond its limit: it ends here, and not where it wraps.
-    fn note_endless(&mut self, to: &ast::Expr<'s>, ty: Elementary) {
+    /// Notes a FOR whose counter may have no value beyond its limit: it ends here, and not where it wraps. Of one that has
+    /// none for certain, a lint says so.
+    fn note_endless(&mut self, step: &Step, limit: &Expr, range: (i128, i128), (to, ty): (&ast::Expr<'s>, Elementary)) {
+        let known = self.known_range(limit);
+        let steps = match step {
+            Step::Constant(step) => (*step, *step),
+            Step::Variable(step) => self.known_range(step),
+        };
+        let furthest = [known.1.saturating_add(steps.1.max(0)), known.0.saturating_add(steps.0.min(0))];
+        if furthest.iter().all(|it| (range.0..=range.1).contains(it)) {
+            return;
+        }
         let dialect = self.decl.dialect(to.span);
         self.note_use(Use::Part(Part::LimitOfType), to.span);
-        if !is_followed(dialect, Part::LimitOfType) {
+        let is_certain = limit.as_const().is_some() && matches!(step, Step::Constant(_));
+        if is_certain && !is_followed(dialect, Part::LimitOfType) {
             let system = dialect.name().to_ascii_uppercase();
             let message =
                 format!("on {system} this loop does not end: {} has no value beyond its limit", article(ty.name()));
@@ -231,11 +240,54 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
+    /// A value of a type; and as it is computed, where that is a number which the type may not hold.
+    fn value_and_wide(&mut self, expr: &ast::Expr<'s>, ty: Type) -> (Option<Expr>, Option<Expr>) {
+        let Some(operand) = self.operand(expr, Some(ty)) else { return (None, None) };
+        let wide = match &operand {
+            Operand::Promoted(value, _) if value.as_const().is_none() => Some(value.clone()),
+            Operand::Promoted(..) | Operand::Typed(_) | Operand::Integer(_) | Operand::Real { .. } => None,
+        };
+        (self.coerce(operand, ty, expr.span), wide)
+    }
+
+    /// A FOR to a limit that is computed at more bits than its counter has: the number nearest to it is the limit. Where even
+    /// the least value of the counter is beyond it, there is no turn.
+    fn loop_to(&mut self, mut head: For, wide: Option<Expr>, span: Span) -> Option<()> {
+        let at = self.at(span);
+        let whole = head.last.ty.elementary().and_then(|it| it.repr().range());
+        let Some((wide, (least, most))) = wide.zip(whole) else {
+            self.push(head.statement(at).kind, span);
+            return Some(());
+        };
+        let known = self.known_range(&wide);
+        if least <= known.0 && known.1 <= most {
+            self.push(head.statement(at).kind, span);
+            return Some(());
+        }
+        let [low, high] = [least, most].map(|it| self.coerce(Operand::Integer(it), wide.ty, span));
+        let nearest = self.apply(Op::Limit, wide.ty, vec![low?, wide.clone(), high?], wide.ty, span)?;
+        head.last = stored(nearest, head.last.ty.elementary()?);
+        let goes_up = !matches!(head.step, Step::Constant(step) if step < 0);
+        let first = self.known_range(&head.first);
+        let may_be_beyond =
+            if goes_up { known.0 < first.0.max(least) && first.0 == least } else { known.1 > most && first.1 == most };
+        if !may_be_beyond {
+            self.push(head.statement(at).kind, span);
+            return Some(());
+        }
+        let op = if goes_up { Op::Le } else { Op::Ge };
+        let condition = self.is_before_limit(op, head.first.clone(), &wide, span)?;
+        let otherwise = vec![Statement::assign(head.counter.clone(), head.first.clone(), at)];
+        self.push(StatementKind::If { condition, then: vec![head.statement(at)], otherwise }, span);
+        Some(())
+    }
+
     fn counts(&self, ty: Elementary, span: Span) -> bool {
         ty.is_bits() && ty != Elementary::Bool && self.decl.dialect(span).mixes_bits_and_integers()
     }
 
-    fn step(&mut self, by: Option<&ast::Expr<'s>>, ty: Elementary) -> Option<Step> {
+    /// `wide` becomes the step as it is computed, where that is at more bits.
+    fn step(&mut self, by: Option<&ast::Expr<'s>>, ty: Elementary, wide: &mut Option<Expr>) -> Option<Step> {
         let Some(by) = by else { return Some(Step::Constant(1)) };
         // A negative constant steps down, also for an unsigned counter.
         let operand = self.operand(by, Some(Type::Elementary(ty)))?;
@@ -254,7 +306,12 @@ impl<'s> Checker<'_, 's> {
                 None
             }
             Some(step) if step.abs() <= most => Some(Step::Constant(step)),
-            Some(_) | None => self.coerce(operand, Type::Elementary(ty), by.span).map(Step::Variable),
+            Some(_) | None => {
+                if let Operand::Promoted(value, _) = &operand {
+                    *wide = Some(value.clone());
+                }
+                self.coerce(operand, Type::Elementary(ty), by.span).map(Step::Variable)
+            }
         }
     }
 }

@@ -110,6 +110,9 @@ impl<'s> Declarations<'s> {
         if name.text.is_empty() {
             return;
         }
+        if matches!(routine.kind, ast::PouKind::Getter | ast::PouKind::Setter) {
+            self.properties.insert(Key(name.text));
+        }
         if routine.is_hidden {
             self.pous[owner].hidden.entry(name.span).or_default().set(routine.kind, slot, name.span);
             return;

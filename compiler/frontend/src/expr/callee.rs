@@ -55,7 +55,7 @@ impl<'s> Checker<'_, 's> {
                 Some(callee) => callee,
                 None => match self.routine_of(base, *name) {
                     Some(slot) => Some(Callee::Routine(slot)),
-                    None if self.is_unknown_head(base, *name) => None,
+                    None if self.static_type(base).is_some_and(|it| self.is_unknown_head(it, *name)) => None,
                     None => Some(Callee::Instance),
                 },
             },

@@ -251,9 +251,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Reports a name that an INTERFACE does not have, where a variable of one is before it.
-    pub(crate) fn is_unknown_head(&mut self, variable: &ast::Expr<'s>, name: ast::Name<'s>) -> bool {
-        let ty = self.static_type(variable);
-        let Some((ty, interface)) = ty.and_then(|it| Some((it, self.decl.interface_of(it)?))) else { return false };
+    pub(crate) fn is_unknown_head(&mut self, ty: Type, name: ast::Name<'s>) -> bool {
+        let Some(interface) = self.decl.interface_of(ty) else { return false };
         let mut all: Vec<_> = self.decl.interfaces_of(interface).iter().copied().collect();
         all.sort_unstable();
         let routines = all.iter().flat_map(|it| &self.decl.pous[*it].ast.routines);

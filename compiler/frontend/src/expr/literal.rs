@@ -55,11 +55,12 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// STruC++ keeps a decimal number without a type as a double, and writes it with the fewest digits that name that.
+    /// STruC++ keeps a decimal number without a type as a double, and writes it with the fewest digits that name that. An
+    /// initial value it writes as it is.
     fn rounded_as_double(&self, value: u64, span: Span) -> i128 {
         let text = self.decl.log.sources.text(span);
         let is_rounded = self.decl.dialect(span).rules().functions.choice == Functions::OfStrucpp;
-        if !is_rounded || value < 1 << 53 || text.contains('#') {
+        if !is_rounded || self.signature.is_none() || value < 1 << 53 || text.contains('#') {
             return i128::from(value);
         }
         let double: Option<f64> = text.replace('_', "").parse().ok();

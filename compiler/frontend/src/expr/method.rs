@@ -136,7 +136,11 @@ impl<'s> Checker<'_, 's> {
         &self,
         expr: &'a ast::Expr<'s>,
     ) -> Option<(Routines, ast::Name<'s>, Option<&'a ast::Expr<'s>>)> {
+        if self.decl.properties.is_empty() {
+            return None;
+        }
         let (ty, name, instance) = match &expr.kind {
+            Ast::Name(name) | Ast::Member(_, name) if !self.decl.properties.contains(&Key(name.text)) => return None,
             Ast::Name(name) if self.scope.get(name.text).is_none() && !self.is_own_result(*name) => {
                 let routines = self.own_routines(*name)?;
                 return routines.is_property().then_some((routines, *name, None));
@@ -308,7 +312,8 @@ impl<'s> Checker<'_, 's> {
 
     /// Whether an expression is the name of a PROGRAM, which alone calls it.
     pub(crate) fn is_program_by_name(&self, expr: &ast::Expr<'s>) -> bool {
-        let Some(path) = expr.path().filter(|it| self.scope.get(it[0].text).is_none()) else { return false };
+        let is_outside = expr.first_name().is_some_and(|it| self.scope.get(it.text).is_none());
+        let Some(path) = is_outside.then(|| expr.path()).flatten() else { return false };
         match self.decl.lookup(&path, Sense::Value) {
             names::Found::One(Meaning::Declared(Entry::Pou(slot))) => {
                 path.last().is_some_and(|it| self.is_callable_program(slot, *it))
@@ -504,8 +509,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn type_of_member(&self, owner: &ast::Expr<'s>, name: ast::Name<'s>) -> Option<Type> {
-        if let Some(mut path) = owner.path()
-            && path.first().is_some_and(|it| self.scope.get(it.text).is_none())
+        if owner.first_name().is_some_and(|it| self.scope.get(it.text).is_none())
+            && let Some(mut path) = owner.path()
         {
             path.push(name);
             match self.decl.lookup(&path, Sense::Value) {

@@ -70,7 +70,7 @@ pub(crate) mod test_words;
 mod text_conversion;
 mod text_functions;
 mod typed_function;
-mod undefined_shift;
+mod undefined;
 pub(crate) mod unresolved;
 pub(crate) mod uses;
 mod variadic;

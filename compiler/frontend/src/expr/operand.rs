@@ -1,7 +1,7 @@
 //! Operands: typed expressions, and literals that take the type of their place.
 
 use super::checker::Checker;
-use super::promotion::stored;
+pub(crate) use super::promotion::stored;
 use super::real::Real;
 use crate::types::coercion::is_narrow;
 use crate::{Code, Diagnostic, Span, ast};

@@ -352,8 +352,15 @@ impl<'s> Checker<'_, 's> {
             {
                 Some(self.convert(Conversion::Value, ty, expr))
             }
+            // `MAX(a AND b, c)` of WORDs is one of `int`s in C++.
+            operand if self.is_promoted_bits(&operand, ty, span) => self.side(operand, ty.elementary()?, span),
             operand => self.coerce(operand, ty, span),
         }
+    }
+
+    fn is_promoted_bits(&self, operand: &Operand, ty: Type, span: Span) -> bool {
+        let is_bits = operand.ty().and_then(Type::elementary).is_some_and(|it| it.is_bits() && is_narrow(it));
+        is_bits && ty == Type::Elementary(Elementary::Dint) && self.decl.dialect(span).rules().keeps_one_type()
     }
 
     /// Whether values of `ty` are of the class, also where a dialect mixes bit strings and integers.

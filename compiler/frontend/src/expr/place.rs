@@ -343,7 +343,7 @@ impl<'s> Checker<'_, 's> {
             };
         }
         let found = self.place_or_view(base)?;
-        if self.is_unknown_head(base, name) {
+        if self.is_unknown_head(self.type_of(&found), name) {
             return None;
         }
         if let Some(part) = self.bit_by_name(self.type_of(&found), name) {

@@ -30,6 +30,7 @@ impl Checker<'_, '_> {
 
     /// The elementary types that an operation computes with: what is only assigned or compared cannot leave its type's range.
     pub(super) fn note_types(&mut self, made: &Expr) {
+        self.note_undefined(made);
         let elementary = |it: &Expr| it.ty.elementary();
         let types: Vec<Elementary> = match &made.kind {
             ExprKind::Apply(op, operands) if compares(*op) => return self.note_compared_times(operands, made),

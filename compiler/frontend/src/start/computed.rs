@@ -42,6 +42,7 @@ pub(super) struct Computed<'s> {
     functions: FxHashSet<Key<'s>>,
     /// PROGRAMs, whose variables others may name.
     programs: FxHashSet<Key<'s>>,
+    blocks: FxHashSet<Key<'s>>,
     methods: FxHashSet<Key<'s>>,
     getters: FxHashSet<Key<'s>>,
     /// Of each class, the PROPERTYs that can be assigned.
@@ -58,6 +59,8 @@ struct Variables<'s> {
     names: FxHashSet<Key<'s>>,
     /// Each REFERENCE TO.
     references: FxHashSet<Key<'s>>,
+    /// The names of types, of variables that may be instances.
+    types: FxHashMap<Key<'s>, Key<'s>>,
     computed: FxHashMap<Key<'s>, When>,
 }
 
@@ -67,6 +70,11 @@ impl<'s> Variables<'s> {
             let names = decl.names.iter().map(|it| Key(it.text));
             if matches!(decl.ty.kind, TypeKind::Reference { kind: RefKind::ReferenceTo, .. }) {
                 self.references.extend(names.clone());
+            }
+            if let TypeKind::Named(path) = &decl.ty.kind
+                && let Some(ty) = path.last()
+            {
+                self.types.extend(names.clone().map(|it| (it, Key(ty.text))));
             }
             self.names.extend(names);
         }
@@ -98,6 +106,9 @@ impl<'s> Computed<'s> {
                 }
                 if pou.kind == PouKind::Program {
                     self.programs.insert(Key(pou.name.text));
+                }
+                if pou.kind.is_block() {
+                    self.blocks.insert(Key(pou.name.text));
                 }
                 let own = self.own.entry(Key(pou.name.text)).or_default();
                 pou.blocks.iter().for_each(|it| own.add(it));
@@ -178,6 +189,7 @@ impl<'s> Computed<'s> {
                 ExprKind::Call(callee, _) => self.when_called(callee),
                 ExprKind::Deref(pointer) => Some(self.when_followed(pointer, pou)),
                 ExprKind::Name(name) => self.when_named(Key(name.text), pou),
+                ExprKind::Member(owner, _) if self.is_instance(owner, pou) => Some(When::After),
                 ExprKind::Member(_, name) if self.getters.contains(&Key(name.text)) => Some(When::After),
                 ExprKind::Member(_, name) => self.members.get(&Key(name.text)).copied(),
                 ExprKind::Literal(_)
@@ -193,6 +205,15 @@ impl<'s> Computed<'s> {
             found = found.max(own);
         });
         found
+    }
+
+    /// Whether an expression begins with an instance, whose variables have their values when it has started.
+    fn is_instance(&self, expr: &Expr<'s>, pou: Option<Key<'s>>) -> bool {
+        let Some(name) = expr.first_name().map(|it| Key(it.text)) else { return false };
+        let own = pou.and_then(|it| self.own.get(&it)).filter(|it| it.names.contains(&name));
+        let ty = own.unwrap_or(&self.globals).types.get(&name);
+        let is_standard = |it: &Key<'_>| staunch_runtime::BLOCKS.iter().any(|block| block.is_named(it.0));
+        ty.is_some_and(|it| self.blocks.contains(it) || is_standard(it))
     }
 
     fn when_called(&self, callee: &Expr<'s>) -> Option<When> {

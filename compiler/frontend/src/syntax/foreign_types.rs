@@ -187,13 +187,11 @@ pub struct Swapped<'s> {
 
 /// `INT x;`: what was read as the one name is the type.
 pub fn type_before_name<'t, 's: 't>(names: &[Name<'s>]) -> impl Rule<'t, 's, Option<Swapped<'s>>> {
-    let ty = match names {
-        [ty] if staunch_ir::Elementary::named(ty.text).is_some() => Some(*ty),
-        _ => None,
-    };
+    let ty = if let [ty] = names { Some(*ty) } else { None };
     let swapped = ahead(move |input| {
+        let is_type = || ty.is_some_and(|it| staunch_ir::Elementary::named(it.text).is_some());
         let follows = matches!(input.kind_ahead(1), Kind::Semicolon | Kind::Assign | Kind::Equal | Kind::Comma);
-        ty.is_some() && input.kind() == Kind::Name && follows
+        input.kind() == Kind::Name && follows && is_type()
     });
     let first = reported(name(), move |name, state, _| {
         if let Some(ty) = ty {

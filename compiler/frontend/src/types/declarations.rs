@@ -162,6 +162,8 @@ pub(crate) struct Declarations<'s> {
     pub pous: Vec<PouSlot<'s>>,
     /// The slots of classes, by where their names are declared.
     pub classes: FxHashMap<Span, usize>,
+    /// The names of all PROPERTYs, of whatever class.
+    pub properties: FxHashSet<Key<'s>>,
     pub globals: Vec<GlobalSlot<'s>>,
     pub addresses: Addresses,
     pub image: Image,
@@ -203,6 +205,7 @@ impl<'s> Declarations<'s> {
             types: Vec::new(),
             pous: Vec::new(),
             classes: FxHashMap::default(),
+            properties: FxHashSet::default(),
             globals: Vec::new(),
             addresses: Addresses::default(),
             image: Image::default(),

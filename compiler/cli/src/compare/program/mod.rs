@@ -16,4 +16,5 @@ pub mod usage;
 
 pub mod apart;
 
+pub mod moving_preset;
 pub mod unfollowed;

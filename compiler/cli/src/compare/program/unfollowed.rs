@@ -1,6 +1,7 @@
 //! Where a program uses what its system computes otherwise than it is computed here: the rules that are known and not
 //! followed.
 
+use super::moving_preset;
 use staunch_frontend::Dialect;
 use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
 use staunch_ir::{Field, Program, Section, Type};
@@ -12,7 +13,9 @@ use staunch_runtime::time::MILLISECOND;
 pub fn find(program: &Program, dialect: Dialect, cycle: Time) -> Vec<String> {
     let rows = NOT_FOLLOWED.iter().filter(|it| it.dialect == dialect);
     let found = rows.filter_map(|row| {
-        let line = used(program, row.uses).or_else(|| timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0))?;
+        let moving = || moving_preset::line(program).filter(|_| row.uses == Use::Part(Part::MovingPreset));
+        let of_timers = || timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0);
+        let line = used(program, row.uses).or_else(of_timers).or_else(moving)?;
         let system = dialect.name().to_ascii_uppercase();
         Some(format!(
             "{} of {system}, which Staunch does not follow and line {line} uses: {} ({})",

@@ -3,8 +3,8 @@
 
 use super::walked::{Name, Walked};
 use staunch_ir::{
-    BlockId, Expr, ExprKind, FieldId, Op, Place, Program, Routine, RoutineId, Statement, StatementKind, Type, Value,
-    faults, reference, visit,
+    BlockId, Expr, ExprKind, FieldId, Place, Program, Routine, RoutineId, Statement, StatementKind, Type, Value,
+    reference, visit,
 };
 use staunch_runtime::PinRole;
 use std::collections::{HashMap, HashSet};
@@ -29,22 +29,6 @@ pub struct Usage {
     pub left_out: HashSet<PinRole>,
     /// Something reads what says that it is done, or may by a reference.
     pub reads_done: bool,
-}
-
-/// Whether the program divides integers by what is not constant, and so may be 0.
-pub fn divides(program: &Program) -> bool {
-    let mut found = false;
-    for routine in &program.routines {
-        visit::statements(&routine.body, &mut |statement| {
-            visit::all_exprs(statement, &mut |it| found |= is_division(program, it));
-        });
-    }
-    found
-}
-
-fn is_division(program: &Program, expr: &Expr) -> bool {
-    let ExprKind::Apply(op @ (Op::Div | Op::Mod), operands) = &expr.kind else { return false };
-    faults::code_faults(program, *op, operands)
 }
 
 /// By the declarations of the instances.

@@ -122,8 +122,13 @@ fn turning(pair: &Pair) -> Option<String> {
 
 /// What the two systems do after a fault that ends both programs here.
 fn after(pair: &Pair, fault: Fault) -> String {
-    let division = (fault.kind == FaultKind::DivideByZero).then_some(Part::DivisionByZero);
-    let rows = pair.sides.iter().filter_map(|it| otherwise(it.dialect, division?));
+    let part = match fault.kind {
+        FaultKind::DivideByZero => Some(Part::DivisionByZero),
+        FaultKind::IndexOutOfRange => Some(Part::Index),
+        FaultKind::SubrangeViolated => Some(Part::Subrange),
+        _ => None,
+    };
+    let rows = pair.sides.iter().filter_map(|it| otherwise(it.dialect, part?));
     let there: Vec<String> =
         rows.map(|it| format!("; {}: {} ({})", system(it.dialect), it.what, it.evidence)).collect();
     let what =

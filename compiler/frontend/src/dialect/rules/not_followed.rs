@@ -104,6 +104,14 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
          passed over, and a block's own input of that name is never set",
     ),
     of_strucpp(Use::Part(Part::Temp), "it keeps its value from call to call"),
+    of_matiec(Use::Part(Part::ShiftPastWidth), SHIFTED),
+    of_strucpp(Use::Part(Part::ShiftPastWidth), SHIFTED),
+    of_matiec(Use::Part(Part::Overflow), OVERFLOWN),
+    of_strucpp(Use::Part(Part::Overflow), OVERFLOWN),
+    of_matiec(
+        Use::Part(Part::Index),
+        "it is not checked: what lies beyond the array is read or written; here it is a fault",
+    ),
     of_matiec(Use::Part(Part::Subrange), UNCHECKED),
     of_strucpp(Use::Part(Part::Subrange), UNCHECKED),
     NotFollowed {
@@ -144,6 +152,12 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
 ];
 
 const UNCHECKED: &str = "it is stored, and the program continues; here it is a fault";
+
+const SHIFTED: &str = "C leaves it undefined, and the compiler and the processor decide: on x86-64 `SHR(DWORD#16#FFFF, n)` with \
+                       n = 33 is 16#7FFF";
+
+const OVERFLOWN: &str = "C leaves it undefined, and the compiler and the processor decide: on x86-64 `n + 1 > n` of a DINT is always \
+                         TRUE, and its least number divided by -1 ends the program";
 
 const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
 
@@ -220,6 +234,13 @@ pub const EDGES: &[Edge] = &[
         "`SHL`, `SHR` by the type's bits or more",
         "zeros come in, the sign in `SHR` of a signed one",
         "CODESYS help and Beckhoff, \"SHL\", \"SHR\": zeros, or `N MOD` the register's bits, as the target has it",
+        &[Use::Function("SHL"), Use::Function("SHR")],
+    ),
+    edge(
+        Dialect::Codesys,
+        "`SHL`, `SHR` of a constant without a type",
+        "of the type of its place",
+        "CODESYS help, \"SHL\": nothing; Beckhoff, TwinCAT 2, \"SHL\": of the smallest type that holds it, so that `SHL(16#F0, 4)` is 0",
         &[Use::Function("SHL"), Use::Function("SHR")],
     ),
     edge(

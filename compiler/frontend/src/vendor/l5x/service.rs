@@ -1,10 +1,29 @@
 //! Instructions that ask the controller, its modules or its axes for something: a program that runs without one has
 //! nothing that could answer.
 
+use rustc_hash::FxHashMap;
+use std::sync::LazyLock;
+
 /// What an instruction is about, where it is one of these.
 pub(crate) fn controller_service(name: &str) -> Option<&'static str> {
-    let is_one = |names: &[&str]| names.iter().any(|it| it.eq_ignore_ascii_case(name));
-    SERVICES.iter().find(|(_, names)| is_one(names)).map(|(what, _)| *what)
+    BY_NAME.get(&packed(name)?).copied()
+}
+
+/// Every call of a program is looked up here.
+static BY_NAME: LazyLock<FxHashMap<[u8; LONGEST], &'static str>> = LazyLock::new(|| {
+    let each = SERVICES.iter().flat_map(|(what, names)| names.iter().map(move |it| (packed(it), *what)));
+    each.filter_map(|(name, what)| Some((name?, what))).collect()
+});
+
+const LONGEST: usize = 8;
+
+/// A short name in upper case.
+fn packed(name: &str) -> Option<[u8; LONGEST]> {
+    let mut packed = [0; LONGEST];
+    let letters = packed.get_mut(..name.len())?;
+    letters.copy_from_slice(name.as_bytes());
+    letters.make_ascii_uppercase();
+    Some(packed)
 }
 
 const SERVICES: &[(&str, &[&str])] = &[
