@@ -264,8 +264,12 @@ impl<'s> Checker<'_, 's> {
             self.push(head.statement(at).kind, span);
             return Some(());
         }
-        let [low, high] = [least, most].map(|it| self.coerce(Operand::Integer(it), wide.ty, span));
-        let nearest = self.apply(Op::Limit, wide.ty, vec![low?, wide.clone(), high?], wide.ty, span)?;
+        let mut nearest = wide.clone();
+        let beyond = [(Op::Max, known.0 < least, least), (Op::Min, known.1 > most, most)];
+        for (op, _, end) in beyond.into_iter().filter(|it| it.1) {
+            let end = self.coerce(Operand::Integer(end), wide.ty, span)?;
+            nearest = self.apply(op, wide.ty, vec![nearest, end], wide.ty, span)?;
+        }
         head.last = stored(nearest, head.last.ty.elementary()?);
         let goes_up = !matches!(head.step, Step::Constant(step) if step < 0);
         let first = self.known_range(&head.first);
