@@ -82,7 +82,8 @@ fn a_line_for_an_output_waits_for_the_others() {
     assert_eq!(output.status.code(), Some(1), "{shown}");
     assert!(shown.contains("Not accepted: `d 15`."), "{shown}");
     assert!(!said.contains("is accepted, but"), "{said}");
-    let other = OWN.written("other.txt", "c 15: not read\nd 15: same\nmotor output: not wired\nlamp output: not wired\n");
+    let other =
+        OWN.written("other.txt", "c 15: not read\nd 15: same\nmotor output: not wired\nlamp output: not wired\n");
     let output = OWN.output("other", MOTOR, &["--from", "iec", "--to", "openplc", "--accept", &other]);
     let said = text(&output.stderr);
     assert!(said.contains("other.txt:4: output of `lamp` is accepted, but does not exist"), "{said}");

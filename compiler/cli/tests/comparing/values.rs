@@ -306,9 +306,8 @@ fn conversions_are_tried_where_they_differ() {
         ("written.st", "x : INT", "b : BOOL", "b := INT_TO_STRING(x) = '5';", "siemens"),
     ];
     for (name, input, output, statement, to) in asked {
-        let text = format!(
-            "PROGRAM p\nVAR_INPUT {input}; END_VAR\nVAR_OUTPUT {output}; END_VAR\n{statement}\nEND_PROGRAM\n"
-        );
+        let text =
+            format!("PROGRAM p\nVAR_INPUT {input}; END_VAR\nVAR_OUTPUT {output}; END_VAR\n{statement}\nEND_PROGRAM\n");
         let (code, text) = compare(&OWN.written(name, &text), ("iec", to), &[]);
         assert!(code == Some(1) && text.contains("differ after 1 scan"), "{name}: {text}");
     }
