@@ -207,21 +207,9 @@ fn fits(map: &Map, ty: Type, width: Width) -> bool {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
-    use crate::fixture::Bytes;
-
-    /// A map with these fields at addresses, each a type, an offset, flags and an address.
-    pub fn map_with(fields: &[(&str, usize, &str, &str)]) -> Map {
-        let mut text =
-            "map\t1\nmachine\t64\t8\nenum\t0\tE\ti16\ta=0\narray\t0\t1\t4\tINT\t2\narray\t1\t0\t1\tBOOL\t1\n"
-                .to_owned();
-        text += "struct\t1\tGlobals\t64\tglobals\n";
-        for (at, (ty, offset, flags, address)) in fields.iter().enumerate() {
-            text += &format!("field\tv{at}\t{ty}\t{offset}\tglobal\t{flags}\t{address}\t-\n");
-        }
-        Map::parse(&(text + "globals\tstruct:1\t0\n")).unwrap()
-    }
+    use crate::fixture::{Bytes, map_with};
 
     #[test]
     fn every_address_has_its_place() {

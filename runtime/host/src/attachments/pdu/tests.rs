@@ -5,9 +5,8 @@ use crate::Machine as _;
 use crate::allocations::allocations;
 use crate::attachments::exchange::Exchange;
 use crate::attachments::points::Points;
-use crate::attachments::points::tests::map_with;
 use crate::attachments::registers::place;
-use crate::fixture::Bytes;
+use crate::fixture::{Bytes, map_with};
 use crate::map::Map;
 
 /// A program with a few points, and one client.
