@@ -6,7 +6,7 @@
 use super::points::Width;
 use core::ffi::{c_int, c_void};
 use std::fs::File;
-use std::io;
+use std::io::{self, Write as _};
 use std::os::fd::AsRawFd;
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::Path;
@@ -64,7 +64,7 @@ impl Mapping {
             return Err(io::Error::other("another running program has it: end that, or write another name"));
         }
         match usize::try_from(metadata.len()) {
-            Ok(0) => file.set_len(size as u64)?,
+            Ok(0) => fill(&file, size)?,
             Ok(it) if it == size => {}
             _ => {
                 return Err(io::Error::other(
@@ -153,6 +153,15 @@ impl Mapping {
         let there = byte.load(Relaxed);
         u64::from(there != 0) == old && exchanged(byte.compare_exchange(there, new as u8, Relaxed, Relaxed))
     }
+}
+
+/// Writes zeros, so that a folder without room is an error now, and not the end of the process at the first access.
+fn fill(mut file: &File, size: usize) -> io::Result<()> {
+    let written = file.write_all(&vec![0; size]);
+    if written.is_err() {
+        let _ = file.set_len(0);
+    }
+    written
 }
 
 fn exchanged<T>(result: Result<T, T>) -> bool {

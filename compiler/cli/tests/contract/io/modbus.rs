@@ -204,3 +204,17 @@ fn every_back_end_has_a_server_and_says_what_has_no_place() {
         has(&plant.ended(0), &["note: modbus:127.0.0.1:0 has no place for b (%QB3), d (%QD1)\n"]);
     }
 }
+
+#[test]
+fn addresses_that_share_bits_are_written_by_any_of_them() {
+    let source = "PROGRAM Main VAR word AT %QW0 : WORD; bit AT %QX0.3 : BOOL; high AT %QX1.7 : BOOL; END_VAR
+VAR seen AT %QW1 : WORD; END_VAR seen := word; END_PROGRAM";
+    let folder = built("io_shared_bits", source);
+    let plant = Plant::start(&folder, "plant", "--cycle 2ms --io modbus:127.0.0.1:0").listening();
+    let mut client = Client::of(&plant);
+    client.ask(&[5, 0, 3, 0xFF, 0]);
+    until("the bit is in the word", || client.words(HOLDING, 0, 2) == [8, 8]);
+    client.write_words(0, &[0x8001]);
+    until("the word has the bits", || client.bits(COILS, 3, 13)[12]);
+    assert_eq!((client.bit(COILS, 3), client.words(HOLDING, 0, 2)), (false, vec![0x8001, 0x8001]));
+}

@@ -139,7 +139,7 @@ q := TRUE;
 WHILE go DO n := n + 1; END_WHILE
 END_PROGRAM";
     let folder = built("io_endless", source);
-    let cases: [(&str, &str); 2] = [("io_watchdog", "--watchdog 200ms"), ("io_signals", "")];
+    let cases: [(&str, &str); 2] = [("io_watchdog", "--watchdog 1s"), ("io_signals", "")];
     for (test, arguments) in cases {
         let name = name(test);
         let arguments = format!("--cycle 5ms --loop-budget 1000000000000000 --io shm:{name} {arguments}");
@@ -152,7 +152,7 @@ END_PROGRAM";
         } else {
             until("the scan hangs", || {
                 let scans = image.number::<8>(SCANS);
-                std::thread::sleep(std::time::Duration::from_millis(100));
+                std::thread::sleep(std::time::Duration::from_millis(400));
                 scans == image.number::<8>(SCANS)
             });
             // The first asks for an end, the second makes one.
@@ -207,4 +207,32 @@ END_PROGRAM";
     let rows: Vec<_> = trace.lines().skip(1).map(|it| it.splitn(3, ',').nth(2).unwrap()).collect();
     assert_eq!(rows, ["8,1,1", "107,2,2", "107,3,3", "107,4,1", "107,5,2", "107,6,3"]);
     assert_eq!((image.outputs(), image.number::<8>(SCANS)), (0, 6));
+}
+
+#[test]
+fn tasks_and_what_a_configuration_binds_are_connected() {
+    let source = "FUNCTION_BLOCK Valve VAR closed AT %I* : BOOL; open AT %Q* : BOOL; END_VAR open := NOT closed; END_FUNCTION_BLOCK
+PROGRAM Line VAR_INPUT start : BOOL; END_VAR VAR_OUTPUT lamp : BOOL; END_VAR
+VAR inlet : Valve; level AT %I* : INT; END_VAR
+inlet(); lamp := start AND level > 3; END_PROGRAM
+PROGRAM Slow VAR n AT %QW9 : INT; END_VAR n := n + 1; END_PROGRAM
+CONFIGURATION c RESOURCE r ON cpu
+TASK fast(INTERVAL := T#2ms, PRIORITY := 1); TASK slow(INTERVAL := T#20ms, PRIORITY := 2);
+PROGRAM line WITH fast : Line(start := %IX3.0, lamp => %QX3.0); PROGRAM other WITH slow : Slow; END_RESOURCE
+VAR_CONFIG line.inlet.closed AT %IX0.0 : BOOL; line.inlet.open AT %QX0.0 : BOOL; line.level AT %IW2 : INT; END_VAR
+END_CONFIGURATION";
+    let folder = built("io_bound", source);
+    let name = name("io_bound");
+    let plant = Plant::start(&folder, "plant", &format!("--io shm:{name}"));
+    let image = Image::open(&name);
+    until("the valve opens", || image.number::<1>(OUTPUTS) == 1);
+    image.write(INPUTS, &[1]);
+    until("the valve closes", || image.number::<1>(OUTPUTS) == 0);
+    image.write(INPUTS + 24, &[1]);
+    image.write(INPUTS + WORDS + 4, &[4, 0]);
+    until("the lamp is on", || image.number::<1>(OUTPUTS + 24) == 1);
+    let slow = image.number::<2>(OUTPUTS + WORDS + 18);
+    until("the slow task runs", || image.number::<2>(OUTPUTS + WORDS + 18) > slow);
+    plant.signal("-INT");
+    plant.ended(0);
 }
