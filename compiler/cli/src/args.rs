@@ -4,7 +4,7 @@ use clap::error::{ContextKind, ContextValue};
 use clap::{ArgAction, Args, Parser, Subcommand, ValueEnum};
 use staunch_build::Project;
 use staunch_frontend::Dialect;
-use staunch_host::{Moment, Overrun};
+use staunch_host::{AtEnd, Connection, Moment, Overrun};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -235,6 +235,13 @@ pub struct Run {
     pub realtime: bool,
     #[command(flatten)]
     pub pacing: Pacing,
+    /// With --realtime, connect the variables at addresses: shm:NAME is a process image in /dev/shm, modbus:ADDRESS:PORT a
+    /// Modbus TCP server; may be repeated
+    #[arg(long, value_name = "CONNECTION", requires = "realtime", value_parser = Connection::parse)]
+    pub io: Vec<Connection>,
+    /// With --io, what outputs do at the end and after a fault [default: zero]
+    #[arg(long, value_name = "zero|hold", requires = "io", value_parser = AtEnd::parse)]
+    pub io_stop: Option<AtEnd>,
 }
 
 /// How a run in real time keeps its time.

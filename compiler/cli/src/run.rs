@@ -5,7 +5,7 @@ use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use crate::{REJECTED, apart};
-use staunch_host::{Machine, Map, Moment, Options, Overrun, Pacing};
+use staunch_host::{AtEnd, Io, Machine, Map, Moment, Options, Overrun, Pacing};
 use staunch_ir::Program;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -63,6 +63,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         retain_within: args.retain_within,
         realtime: args.realtime,
         pacing: pacing(&args.pacing),
+        io: Io { connections: args.io.clone(), at_end: args.io_stop.unwrap_or_default() },
         table: true,
         quiet: session.common.quiet,
     })
@@ -93,6 +94,9 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
     }
     if args.realtime {
         command.arg("--realtime").args(pacing_arguments(&args.pacing));
+        args.io.iter().for_each(|it| _ = command.arg("--io").arg(it.to_string()));
+        let at_end = args.io_stop.and_then(|wanted| AtEnd::ALL.into_iter().find(|it| it.1 == wanted));
+        at_end.map(|it| command.arg("--io-stop").arg(it.0));
     }
     if session.common.quiet {
         command.arg("--quiet");

@@ -1,5 +1,6 @@
 //! The arguments of a built executable: those of `staunch run`.
 
+use crate::attachments::{AtEnd, Connection};
 use crate::bench::BenchOptions;
 use crate::literal;
 use crate::path::nearest;
@@ -18,7 +19,7 @@ pub enum Wish {
     Version,
 }
 
-const FLAGS: [(&str, &str, &str); 24] = [
+const FLAGS: [(&str, &str, &str); 26] = [
     ("--program", "NAME", "Run only this program"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time from scan to scan, as 10ms"),
@@ -37,6 +38,8 @@ const FLAGS: [(&str, &str, &str); 24] = [
     ("--overrun", "skip|catch-up|fault", "In real time, what follows a scan that is too long; skip without"),
     ("--watchdog", "TIME", "In real time, end when no scan has ended for so long"),
     ("--watchdog-device", "FILE", "In real time, show a watchdog of the machine that scans end: /dev/watchdog"),
+    ("--io", "CONNECTION", "In real time, connect %I, %Q and %M: shm:NAME or modbus:ADDRESS:PORT; may be repeated"),
+    ("--io-stop", "zero|hold", "With --io, what outputs do at the end; zero without"),
     ("--table", "", "Print the last scans as a table"),
     ("--bench", "", "Measure the time of a scan instead"),
     ("--quiet", "", "Print nothing but errors and the trace"),
@@ -48,7 +51,7 @@ const FLAGS: [(&str, &str, &str); 24] = [
 /// Reads the arguments, of which the first is the executable's name.
 pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wish, String> {
     let name = arguments.next().unwrap_or_default();
-    let (mut options, mut bench) = (Options::default(), false);
+    let (mut options, mut bench, mut at_end) = (Options::default(), false, None);
     while let Some(argument) = arguments.next() {
         let text = argument.to_string_lossy().into_owned();
         let (flag, attached) = match text.split_once('=') {
@@ -80,6 +83,8 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
             "--overrun" => options.pacing.overrun = Overrun::parse(&utf8(value()?)?)?,
             "--watchdog" => options.pacing.watchdog = Some(parse_duration(&utf8(value()?)?)?),
             "--watchdog-device" => options.pacing.watchdog_device = Some(value()?.into()),
+            "--io" => options.io.connections.push(Connection::parse(&utf8(value()?)?)?),
+            "--io-stop" => at_end = Some(AtEnd::parse(&utf8(value()?)?)?),
             "--bench" => bench = true,
             "--quiet" | "-q" => options.quiet = true,
             "--version" | "-V" => return Ok(Wish::Version),
@@ -93,6 +98,10 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
     if options.retain_within.is_some() && options.retain.is_none() {
         return Err("--retain-within needs --retain, the file to keep them in".to_owned());
     }
+    if at_end.is_some() && options.io.connections.is_empty() {
+        return Err("--io-stop needs --io, what the outputs are connected with".to_owned());
+    }
+    options.io.at_end = at_end.unwrap_or_default();
     let Options { program, scans, cycle, loop_budget, stimulus, .. } = options;
     Ok(match bench {
         true => Wish::Bench(BenchOptions { program, scans, cycle, loop_budget, stimulus }),

@@ -46,6 +46,17 @@ variable\t0\tcorner\tvar\tstruct:0\t64\t-\t-\t-
 variable\t0\ttotal\texternal\tDINT\t0\tretain\t-\t-
 ";
 
+/// A map with these fields at addresses, each a type, an offset, flags and an address.
+pub fn map_with(fields: &[(&str, usize, &str, &str)]) -> Map {
+    let mut text =
+        "map\t1\nmachine\t64\t8\nenum\t0\tE\ti16\ta=0\narray\t0\t1\t4\tINT\t2\narray\t1\t0\t1\tBOOL\t1\n".to_owned();
+    text += "struct\t1\tGlobals\t64\tglobals\n";
+    for (at, (ty, offset, flags, address)) in fields.iter().enumerate() {
+        text += &format!("field\tv{at}\t{ty}\t{offset}\tglobal\t{flags}\t{address}\t-\n");
+    }
+    Map::parse(&(text + "globals\tstruct:1\t0\n")).unwrap()
+}
+
 /// The fields of `Garage`'s state, which hold what its variables say.
 pub fn map() -> Map {
     let mut fields = String::new();

@@ -28,6 +28,8 @@ mod start;
 mod stimulus;
 mod trace;
 
+mod attachments;
+
 mod bench;
 mod drive;
 mod realtime;
@@ -45,6 +47,7 @@ mod allocations;
 mod fixture;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
+pub use attachments::{AtEnd, Connection, Io};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot};
 pub use csv::cells as csv_cells;

@@ -6,6 +6,7 @@ mod summary;
 pub use options::{Moment, Options};
 pub use summary::Summary;
 
+use crate::attachments::{Attachments, Ended};
 use crate::column::{columns, overlays};
 use crate::map::Map;
 use crate::messages::Messages;
@@ -35,8 +36,9 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     if options.cycle.is_some_and(|it| it <= 0) {
         return Err(Error::Usage("the cycle must be a time above zero".to_owned()));
     }
-    if options.pacing.is_asked_for() && !options.realtime {
-        let text = "--priority, --cpu, --overrun and --watchdog are for a run in real time: add --realtime";
+    let is_connected = !options.io.connections.is_empty();
+    if (options.pacing.is_asked_for() || is_connected) && !options.realtime {
+        let text = "--priority, --cpu, --overrun, --watchdog and --io are for a run in real time: add --realtime";
         return Err(Error::Usage(text.to_owned()));
     }
     options.trace.as_deref().map_or(Ok(()), trace::check_name)?;
@@ -68,6 +70,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         epoch: 0,
         out: Output { rows: 0, lost: 0, trace: None, table: Table::new(&subject, terminal::width()) },
         real: None,
+        attachments: None,
         alone: None,
         summary: Summary::default(),
         minor_faults: MinorFaults::default(),
@@ -144,6 +147,8 @@ struct Runner<'a> {
     epoch: Time,
     out: Output,
     real: Option<RealTime>,
+    /// Where inputs and outputs are connected with something.
+    attachments: Option<Attachments>,
     /// The program that has nothing around its scans.
     alone: Option<Due>,
     summary: Summary,
@@ -181,6 +186,8 @@ impl Runner<'_> {
                 let pace = Pace::within(Duration::from_nanos(u64::try_from(within).unwrap_or(0)));
                 retention.save_always(pace)?;
             }
+            // Before a priority is taken: their threads are to have none.
+            self.attach()?;
             let line = if self.options.json { summary::figures_json } else { summary::figures_text };
             self.real = Some(RealTime::start(self.map, &self.schedule, &self.options.pacing, line)?);
         }
@@ -199,6 +206,7 @@ impl Runner<'_> {
         }
         self.summary.elapsed = began.elapsed();
         self.summary.time = if self.summary.scans == 0 { 0 } else { self.schedule.next() };
+        self.detach(&ran);
         self.summary.real = self.real.take().map(RealTime::end);
         ran
     }
@@ -249,9 +257,17 @@ impl Runner<'_> {
         let Some(now) = real.wait(due) else { return Ok(None) };
         let Some(turn) = self.schedule.pick(now, placed, real.catches_up()) else { return Ok(None) };
         self.stimulate(number, now)?;
+        if let Some(attachments) = &mut self.attachments {
+            attachments.before(self.machine);
+            // An input of the stimulus is not the world's.
+            self.hold();
+        }
         let began = self.now();
         let ran = self.program(turn.program, number, began);
         let ended = self.now();
+        if let Some(attachments) = self.attachments.as_mut().filter(|_| ran.is_ok()) {
+            attachments.after(self.machine.state());
+        }
         let whole = ran.is_ok();
         self.after(subject, number, began, ran)?;
         let scanned = self.real.as_mut().filter(|_| whole).map(|it| it.add(&turn, began, ended));
@@ -268,6 +284,21 @@ impl Runner<'_> {
 
     fn now(&self) -> Time {
         self.real.as_ref().map_or(0, RealTime::now)
+    }
+
+    fn attach(&mut self) -> Result<(), Error> {
+        if !self.options.io.connections.is_empty() {
+            let (state, quiet) = (self.machine.state(), self.options.quiet);
+            self.attachments = Some(Attachments::start(self.map, &self.options.io, state, quiet)?);
+        }
+        Ok(())
+    }
+
+    /// Outputs take their safe values.
+    fn detach(&mut self, ran: &Result<(), Error>) {
+        let faulted = matches!(ran, Err(Error::Fault { .. } | Error::Overrun { .. }));
+        let ended = if faulted { Ended::Fault } else { Ended::Well };
+        self.attachments.iter_mut().for_each(|it| it.end(ended));
     }
 
     /// What comes after a scan: messages, also those before a fault, retained variables, the trace.
@@ -385,13 +416,18 @@ impl Runner<'_> {
             retention.save(clock, self.machine.state())?;
         }
         self.start.again(event, self.machine);
+        self.hold();
+        self.fresh.fill(true);
+        self.machine.starts_again(event);
+        Ok(())
+    }
+
+    /// Inputs are as the stimulus has them.
+    fn hold(&mut self) {
         for it in &self.held {
             let bytes = it.over(self.machine.state()).into_owned();
             self.machine.write(it.offset, &bytes);
         }
-        self.fresh.fill(true);
-        self.machine.starts_again(event);
-        Ok(())
     }
 
     /// The program's clock as it is kept with retained variables.

@@ -55,7 +55,7 @@ mod unix {
         ASKED.store(true, Ordering::Relaxed);
         // SAFETY: POSIX allows both in a handler. A second signal ends the process at once.
         unsafe {
-            signal(number, DEFAULT);
+            signal(number, at_once as extern "C" fn(i32) as usize);
             alarm(PATIENCE);
         }
     }
@@ -64,13 +64,19 @@ mod unix {
         FIGURES.store(true, Ordering::Relaxed);
     }
 
-    /// The scan does not end: the process ends as one that ignores the signal would.
-    extern "C" fn give_up(_: i32) {
+    /// Nothing is waited for.
+    extern "C" fn at_once(number: i32) {
+        crate::attachments::emergency::stop();
         // SAFETY: POSIX allows both in a handler.
         unsafe {
-            signal(INTERRUPT, DEFAULT);
-            raise(INTERRUPT);
+            signal(number, DEFAULT);
+            raise(number);
         }
+    }
+
+    /// The scan does not end: the process ends as one that ignores the signal would.
+    extern "C" fn give_up(_: i32) {
+        at_once(INTERRUPT);
     }
 
     /// Gives up after so many seconds; never with 0.

@@ -9,6 +9,8 @@ mod cache;
 mod check;
 mod coverage;
 mod external;
+#[cfg(unix)]
+mod io;
 mod lists;
 mod mutants;
 mod near;

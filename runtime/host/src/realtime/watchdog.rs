@@ -116,6 +116,7 @@ fn end(limit: Duration) -> ! {
         fn _exit(code: i32) -> !;
     }
     let text = format!("error: watchdog: no scan has ended for {}\n", crate::spoken::rounded(limit));
+    crate::attachments::emergency::stop();
     let _ = io::stderr().write_all(text.as_bytes());
     // SAFETY: it takes any number.
     unsafe { _exit(FAULT) }

@@ -1,6 +1,7 @@
 //! What is to be run, and how.
 
 use crate::Error;
+use crate::attachments::Io;
 use crate::realtime::Pacing;
 use crate::replace::{Role, keep_apart};
 use staunch_runtime::Time;
@@ -61,6 +62,8 @@ pub struct Options {
     pub realtime: bool,
     /// How a run in real time keeps its time.
     pub pacing: Pacing,
+    /// In real time, what inputs and outputs are connected with.
+    pub io: Io,
     /// Prints nothing but errors and the trace.
     pub quiet: bool,
     /// Prints the last scans as a table, if there is no trace.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::allocations::allocations;
+use crate::attachments::{Connection, Io};
 use crate::fixture::{Garage, map};
 use staunch_runtime::{Fault, Value};
 use std::path::Path;
@@ -170,18 +171,23 @@ impl Machine for Changing {
     }
 }
 
-/// Retained variables are saved by a thread of its own, and figures are counted in place.
+/// Retained variables are saved by a thread of its own, figures are counted in place, and the bytes of inputs and outputs copied.
 #[test]
 #[cfg_attr(miri, ignore = "it runs in real time")]
 fn more_scans_in_real_time_allocate_no_more() {
     let folder = folder("no-allocation");
     let allocated = |name: &str, scans: u64| {
+        let mut connections = vec![Connection::Modbus("127.0.0.1:0".to_owned())];
+        if cfg!(target_os = "linux") {
+            connections.push(Connection::SharedMemory(format!("staunch-allocations-{}-{name}", std::process::id())));
+        }
         let options = Options {
             realtime: true,
             quiet: true,
             scans: Some(scans),
             cycle: Some(1000),
             retain: Some(folder.join(name)),
+            io: Io { connections, ..Io::default() },
             ..Options::default()
         };
         let (map, mut machine, mut ran) = (map(), Changing([0; 128]), None);
@@ -190,4 +196,7 @@ fn more_scans_in_real_time_allocate_no_more() {
         count
     };
     assert_eq!(allocated("a", 10), allocated("b", 100_000));
+    for name in ["a", "b"] {
+        let _ = std::fs::remove_file(format!("/dev/shm/staunch-allocations-{}-{name}", std::process::id()));
+    }
 }

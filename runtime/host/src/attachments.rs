@@ -1,0 +1,73 @@
+//! Inputs and outputs of a running program: what connects the variables at addresses (`%IX0.0`) with the world outside.
+//!
+//! An attachment stands around each scan: [`before`](Attachment::before) writes inputs into the state,
+//! [`after`](Attachment::after) shows the state's outputs outside. Between the two the program works on a state that nobody else sees, so the
+//! image is frozen, and what is shown is of one whole scan. Both run in the scan's thread: they copy bytes, and neither allocate nor wait.
+//! Whoever talks to a network does so in a thread of its own (`exchange` has what the two threads share).
+
+mod attachment;
+pub(crate) mod emergency;
+mod exchange;
+mod image;
+mod options;
+mod pdu;
+mod points;
+mod registers;
+mod server;
+mod shared_memory;
+
+#[cfg(target_os = "linux")]
+mod mapping;
+#[cfg(not(target_os = "linux"))]
+#[path = "attachments/no_mapping.rs"]
+mod mapping;
+
+pub(crate) use attachment::Ended;
+pub use options::{AtEnd, Connection, Io};
+
+use crate::map::Map;
+use crate::{Error, Machine};
+use attachment::Attachment;
+use points::Points;
+use server::Modbus;
+use shared_memory::SharedMemory;
+
+/// All attachments of a run, in their order.
+pub(crate) struct Attachments(Vec<Box<dyn Attachment>>);
+
+impl Attachments {
+    /// Connects a program, whose state is that before the first scan. `quiet` keeps notes back.
+    pub fn start(map: &Map, io: &Io, state: &[u8], quiet: bool) -> Result<Self, Error> {
+        if io.connections.len() > Connection::MOST {
+            return Err(Error::Usage(format!("--io: a run has up to {} connections", Connection::MOST)));
+        }
+        let points = Points::of(map);
+        let mut all: Vec<Box<dyn Attachment>> = Vec::new();
+        for connection in &io.connections {
+            all.push(match connection {
+                Connection::SharedMemory(name) => Box::new(SharedMemory::start(name, &points, io.at_end, state)?),
+                Connection::Modbus(address) => Box::new(Modbus::start(address, &points, io.at_end, quiet)?),
+            });
+            let without = match connection {
+                Connection::SharedMemory(_) => points.without_place(|_| true),
+                Connection::Modbus(_) => points.without_place(|it| registers::place(it).is_some()),
+            };
+            if let Some(names) = without.filter(|_| !quiet) {
+                crate::error::tell(format_args!("note: {connection} has no place for {names}"));
+            }
+        }
+        Ok(Self(all))
+    }
+
+    pub fn before(&mut self, machine: &mut dyn Machine) {
+        self.0.iter_mut().for_each(|it| it.before(machine));
+    }
+
+    pub fn after(&mut self, state: &[u8]) {
+        self.0.iter_mut().for_each(|it| it.after(state));
+    }
+
+    pub fn end(&mut self, ended: Ended) {
+        self.0.iter_mut().for_each(|it| it.end(ended));
+    }
+}

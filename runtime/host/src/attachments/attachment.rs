@@ -1,0 +1,20 @@
+//! What all attachments are.
+
+use crate::Machine;
+
+/// How a run has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ended {
+    Well,
+    Fault,
+}
+
+/// What stands around each scan. None of it waits or allocates, but for the end.
+pub(crate) trait Attachment {
+    /// Writes inputs, and what the world outside has written elsewhere, into the state.
+    fn before(&mut self, machine: &mut dyn Machine);
+    /// Shows the outputs of a whole scan outside.
+    fn after(&mut self, state: &[u8]);
+    /// The run is over: outputs take their safe values.
+    fn end(&mut self, ended: Ended);
+}
