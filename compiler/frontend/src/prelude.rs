@@ -405,17 +405,17 @@ static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| 
     found
 });
 
-/// The names of units, or what they begin with, and what else asks for one.
+/// What asks for a unit by another name than its own.
 static ASKING: LazyLock<FxHashSet<Key<'static>>> = LazyLock::new(|| {
-    let own = UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.'));
-    own.chain([SYSTEM]).chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
+    [SYSTEM].into_iter().chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
 });
 
-/// The lengths of these, by their first letters: most words of a program are
+/// The lengths of these and of units' names, by their first letters: most words of a program are
 /// passed over by these.
 static LENGTHS: LazyLock<[u32; 32]> = LazyLock::new(|| {
     let mut lengths = [0; 32];
-    for Key(name) in ASKING.iter() {
+    let own = UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.'));
+    for name in own.chain(ASKING.iter().map(|it| it.0)) {
         if let Some(lengths) = name.bytes().next().and_then(|it| lengths.get_mut(place_of(it))) {
             *lengths |= 1 << name.len();
         }
@@ -796,12 +796,16 @@ fn mentions_any(text: &str) -> bool {
         }
         let length = at - start;
         let known = lengths.get(place_of(*first)).copied().unwrap_or(0);
-        if length < 32 && known & (1 << length) != 0 && text.get(start..at).is_some_and(|it| ASKING.contains(&Key(it)))
-        {
+        if length < 32 && known & (1 << length) != 0 && text.get(start..at).is_some_and(may_name) {
             return true;
         }
     }
     false
+}
+
+/// Whether a word may be a unit's name, or what its name begins with.
+fn may_name(word: &str) -> bool {
+    ASKING.contains(&Key(word)) || units(word).next().is_some()
 }
 
 /// By a table: each character of a program is looked at.

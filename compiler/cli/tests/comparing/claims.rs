@@ -260,6 +260,16 @@ fn what_a_system_does_otherwise_is_not_equal() {
         ("index", "openplc", "a : ARRAY[0..3] OF DINT", "a[n] := 5; q := a[2];", "it is not checked"),
         ("shift", "openplc4", "w : DWORD", "w := SHR(DWORD#16#FFFF, n); q := DWORD_TO_DINT(w);", "past the width"),
         ("sum", "openplc", "b : BOOL", "b := n + 1 > n; IF b THEN q := 1; ELSE q := 0; END_IF", "signed overflow"),
+        ("minus", "openplc4", "b : BOOL", "b := -n < 0; IF b THEN q := 1; ELSE q := 0; END_IF", "signed overflow"),
+        ("half", "openplc", "b : BOOL", "q := (n + n) / 2;", "signed overflow"),
+        ("rest", "openplc", "m : DINT := -1", "m := -1; q := n MOD m;", "signed overflow"),
+        (
+            "kept",
+            "siemens",
+            "t : TON := (PT := T#20ms)",
+            "IF n > 0 THEN t(PT := T#50ms); ELSE t(IN := n < 0); END_IF",
+            "PT that moves",
+        ),
         ("quotient", "openplc", "b : BOOL", "b := n = 0; q := n / SEL(b, DINT#1, DINT#-1);", "signed overflow"),
         (
             "moved",
@@ -287,6 +297,7 @@ fn what_a_system_does_otherwise_is_not_equal() {
     let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i : INT; t : TON; END_VAR\n";
     let bodies = [
         ("openplc4", "q := 0; FOR i := 0 TO k DO q := q + 1; END_FOR"),
+        ("openplc4", "q := 0; FOR i := 0 TO 9 DO q := q + WORD_TO_DINT(SHL(WORD#1, i)); END_FOR"),
         ("siemens", "IF b THEN t(IN := b, PT := T#20ms); ELSE t(IN := FALSE); END_IF"),
     ];
     for (to, body) in bodies {

@@ -60,7 +60,8 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether STruC++ writes C++'s `!` for NOT of this, which makes 1 of 0 and 0 of anything else: it does where it does not
-    /// know the type, right before SEL, MUX and LIMIT; and NOT of that, in parentheses, is of a BOOL.
+    /// know the type, right before SEL, MUX and LIMIT, and before a function whose first argument has no known type; and NOT of
+    /// that, in parentheses, is of a BOOL.
     pub(super) fn negates_as_bool(&self, inner: &ast::Expr<'s>) -> bool {
         let is_chosen = |callee: &ast::Expr<'s>| match &callee.kind {
             ast::ExprKind::Name(name) => ["SEL", "MUX", "LIMIT"].iter().any(|it| it.eq_ignore_ascii_case(name.text)),
@@ -68,7 +69,8 @@ impl<'s> Checker<'_, 's> {
         };
         self.decl.dialect(inner.span).rules().functions.choice == Functions::OfStrucpp
             && match &inner.kind {
-                ast::ExprKind::Call(callee, _) => is_chosen(callee),
+                ast::ExprKind::Call(callee, _) => is_chosen(callee) || is_of_unknown(inner),
+                ast::ExprKind::Unary(ast::UnaryOp::Not, it) => matches!(&it.bare().kind, ast::ExprKind::Binary(..)),
                 ast::ExprKind::Paren(it) => match &it.kind {
                     ast::ExprKind::Unary(ast::UnaryOp::Not, inner) => self.negates_as_bool(inner),
                     _ => false,
@@ -173,4 +175,21 @@ fn zero_filled(value: i128, ty: Elementary) -> i128 {
 /// At how many bits those of an integer are computed: 32 at least.
 fn computed_at(own: Elementary) -> Elementary {
     if is_narrow(own) { Elementary::Dint } else { own }
+}
+
+/// Whether a call's first argument combines bits, or is such a call.
+fn is_of_unknown(call: &ast::Expr<'_>) -> bool {
+    const OF_BITS: [&str; 9] = ["MAX", "MIN", "SHL", "SHR", "ROL", "ROR", "AND", "OR", "XOR"];
+    let ast::ExprKind::Call(callee, arguments) = &call.kind else { return false };
+    let is_one = callee.first_name().is_some_and(|it| OF_BITS.iter().any(|own| own.eq_ignore_ascii_case(it.text)));
+    let first = arguments.first().map(|it| match &it.kind {
+        ast::ArgumentKind::Positional(value) | ast::ArgumentKind::Input(_, value) => value,
+        ast::ArgumentKind::Output { .. } => call,
+    });
+    let combines = |it: &ast::Expr<'_>| match &it.kind {
+        ast::ExprKind::Binary(_, op, _) => matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor),
+        ast::ExprKind::Call(..) => is_of_unknown(it),
+        _ => false,
+    };
+    is_one && first.is_some_and(combines)
 }

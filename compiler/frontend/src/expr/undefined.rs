@@ -4,15 +4,26 @@
 use super::checker::Checker;
 use crate::dialect::rules::Functions;
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Elementary, Expr, ExprKind, Op, Part, Place, Type, Use, Value, loops, visit};
+use staunch_ir::{Conversion, Elementary, Expr, ExprKind, For, Op, Part, Type, Use, Value, loops};
 use staunch_runtime::Class;
 
 impl Checker<'_, '_> {
-    /// What a number may be, by the types and constants in it.
+    /// What a number may be, by the types, subranges, loops and constants in it.
     pub(crate) fn known_range(&self, number: &Expr) -> (i128, i128) {
         let program = &self.decl.program;
-        let known = loops::Known { program, loops: &[], checked: &|_| false };
-        let declared = program.range(number.ty).or_else(|| known.range(number));
+        let loops: Vec<&For> = self.counters.iter().map(|it| &it.head).filter(|it| it.is_private).collect();
+        let known = loops::Known { program, loops: &loops, checked: &|_| false };
+        let declared = match &number.kind {
+            ExprKind::Convert(Conversion::Value | Conversion::Same, inner) if program.repr(inner.ty).is_some() => {
+                return self.known_range(inner);
+            }
+            ExprKind::Apply(Op::Limit | Op::LimitLow | Op::LimitFirst, operands) => {
+                let end = |at: usize| operands.get(at).and_then(Expr::as_const).and_then(Value::as_integer);
+                end(0).zip(end(2)).filter(|it| it.0 <= it.1)
+            }
+            _ => program.range(number.ty),
+        };
+        let declared = declared.or_else(|| known.range(number));
         declared.unwrap_or((i128::from(i64::MIN), i128::from(i64::MAX)))
     }
 
@@ -39,20 +50,18 @@ impl Checker<'_, '_> {
         );
     }
 
-    /// Notes an operation on signed integers of 32 or 64 bits that C leaves undefined beyond the type, where that shows: a
-    /// quotient by -1, and a comparison with what is computed of the same variable, as `n + 1 > n`.
+    /// Notes where it shows that C leaves signed numbers beyond 32 or 64 bits undefined: the least one divided by -1, and a sum,
+    /// difference or product that is compared, chosen or divided at once. What is stored first has wrapped.
     pub(super) fn note_undefined(&mut self, made: &Expr) {
         let ExprKind::Apply(op, operands) = &made.kind else { return };
-        let [a, b] = operands.as_slice() else { return };
         let is_undefined = match op {
-            Op::Div | Op::Mod => {
-                let [(least, _), (low, high)] = [a, b].map(|it| self.known_range(it));
-                let whole = a.ty.elementary().and_then(|it| it.repr().range());
-                is_wide(a) && whole.is_some_and(|it| it.0 == least) && (low..=high).contains(&-1)
+            Op::Div | Op::Mod | Op::DivOrZero | Op::ModOrZero => {
+                self.is_least_by_negative(operands) || operands.iter().any(|it| self.may_overflow(it))
             }
-            Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne => {
-                (self.may_overflow(a) || self.may_overflow(b)) && share_a_variable(a, b)
+            Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne | Op::Max | Op::Min | Op::Abs => {
+                operands.iter().any(|it| self.may_overflow(it))
             }
+            Op::Limit | Op::LimitLow | Op::LimitFirst => operands.iter().any(|it| self.may_overflow(it)),
             _ => false,
         };
         if is_undefined {
@@ -60,11 +69,41 @@ impl Checker<'_, '_> {
         }
     }
 
+    fn is_least_by_negative(&self, operands: &[Expr]) -> bool {
+        let [a, b] = operands else { return false };
+        let [(least, _), (low, high)] = [a, b].map(|it| self.known_range(it));
+        let whole = a.ty.elementary().and_then(|it| it.repr().range());
+        is_wide(a) && whole.is_some_and(|it| it.0 == least) && (low..=high).contains(&-1)
+    }
+
     fn may_overflow(&self, side: &Expr) -> bool {
-        let program = &self.decl.program;
-        let known = loops::Known { program, loops: &[], checked: &|_| false };
-        let is_sum = matches!(&side.kind, ExprKind::Apply(Op::Add | Op::Sub | Op::Mul, _));
-        is_sum && is_wide(side) && !known.is_exact(side)
+        let whole = side.ty.elementary().and_then(|it| it.repr().range());
+        match &side.kind {
+            ExprKind::Convert(Conversion::Value | Conversion::Same, inner) => self.may_overflow(inner),
+            ExprKind::Apply(Op::Neg, operands) => {
+                let least = operands.first().map(|it| self.known_range(it).0);
+                is_wide(side) && least == whole.map(|it| it.0)
+            }
+            ExprKind::Apply(op @ (Op::Add | Op::Sub | Op::Mul), operands) => {
+                let [a, b] = operands.as_slice() else { return false };
+                let exact = exact(*op, self.known_range(a), self.known_range(b));
+                is_wide(side) && whole.is_none_or(|it| exact.0 < it.0 || it.1 < exact.1)
+            }
+            _ => false,
+        }
+    }
+}
+
+/// What an operation gives that has room enough.
+fn exact(op: Op, a: (i128, i128), b: (i128, i128)) -> (i128, i128) {
+    let ends = |combine: fn(i128, i128) -> i128| {
+        let all = [combine(a.0, b.0), combine(a.0, b.1), combine(a.1, b.0), combine(a.1, b.1)];
+        (all.into_iter().min().unwrap_or(i128::MIN), all.into_iter().max().unwrap_or(i128::MAX))
+    };
+    match op {
+        Op::Add => ends(i128::saturating_add),
+        Op::Sub => ends(i128::saturating_sub),
+        _ => ends(i128::saturating_mul),
     }
 }
 
@@ -72,12 +111,4 @@ impl Checker<'_, '_> {
 fn is_wide(number: &Expr) -> bool {
     let is_wide = |it: Elementary| it.is(Class::Signed) && it.repr().size() >= 4;
     number.ty.elementary().is_some_and(is_wide)
-}
-
-fn share_a_variable(a: &Expr, b: &Expr) -> bool {
-    let mut of_a: Vec<Place> = Vec::new();
-    visit::reads(a, &mut |place| of_a.push(place.clone()));
-    let mut shares = false;
-    visit::reads(b, &mut |place| shares |= of_a.iter().any(|it| it.is_same_variable(place)));
-    shares
 }

@@ -33,7 +33,10 @@ fn is_preset(program: &Program, at: (&Routine, RoutineId), place: &Place) -> boo
     })
 }
 
-/// Whether a call gives its timer another PT than a call before. One that gives none leaves it as it is.
+/// What a call has that gives no PT: the one that is there, which may be the initial one.
+const KEPT: Option<i128> = Some(-1);
+
+/// Whether a call gives its timer another PT than a call before.
 fn called(
     program: &Program,
     at: (&Routine, RoutineId),
@@ -44,10 +47,14 @@ fn called(
     let Type::Block(id) = block.ty else { return false };
     let preset = id.info().inputs().position(|it| it.name == "PT").filter(|_| id.info().pin("ET").is_some());
     let Some(preset) = preset.and_then(|it| inputs.get(it)) else { return false };
-    if matches!(&preset.kind, ExprKind::Load(place) if is_preset(program, at, place)) {
+    let is_kept = matches!(&preset.kind, ExprKind::Load(place) if is_preset(program, at, place));
+    let input = id.info().inputs().position(|it| it.name == "IN").and_then(|it| inputs.get(it));
+    let is_off = input.and_then(Expr::as_const) == Some(Value::Bool(false));
+    if is_kept && is_off && id.info().name.contains("TON") {
+        // It does not run.
         return false;
     }
     let Some(name) = Walked::of(program, at, block).variable() else { return true };
-    let number = preset.as_const().and_then(Value::as_integer);
+    let number = if is_kept { KEPT } else { preset.as_const().and_then(Value::as_integer) };
     given.insert(name, number).is_some_and(|before| before != number)
 }
