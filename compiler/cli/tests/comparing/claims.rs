@@ -297,7 +297,6 @@ fn what_a_system_does_otherwise_is_not_equal() {
     let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i : INT; t : TON; END_VAR\n";
     let bodies = [
         ("openplc4", "q := 0; FOR i := 0 TO k DO q := q + 1; END_FOR"),
-        ("openplc4", "q := 0; FOR i := 0 TO 9 DO q := q + WORD_TO_DINT(SHL(WORD#1, i)); END_FOR"),
         ("siemens", "IF b THEN t(IN := b, PT := T#20ms); ELSE t(IN := FALSE); END_IF"),
     ];
     for (to, body) in bodies {
