@@ -67,10 +67,11 @@ impl Case {
     /// The inputs, such that few counts are reached: around 0 and at the limits.
     fn guarded(&self) -> String {
         let [least, greatest] = self.from.limits;
-        let near = |count: &str| {
-            format!("({count} > -5 AND {count} < 4 OR {count} < {} OR {count} > {})", least.min(-9) + 3, greatest - 3)
+        let near = |further: i64| {
+            let [low, high] = [least.min(-9) + 3, greatest - 3].map(|it| it + further);
+            format!("(count > {} AND count < {} OR count < {low} OR count > {high})", further - 5, further + 4)
         };
-        format!("sensor := s AND {}; pulse := p AND {};", near("count"), near("(count - 1)"))
+        format!("sensor := s AND {}; pulse := p AND {};", near(0), near(1))
     }
 
     fn inputs(&self) -> String {
