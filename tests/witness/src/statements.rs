@@ -219,7 +219,13 @@ impl<'a> Machine<'a> {
         let Some(base) = place.ty.elementary() else { return unknown("a counter that is not an integer") };
         let first = self.value_as(frame, from, &place.ty)?;
         self.write(&place, &first);
-        let last = self.value_as(frame, to, &Type::Elementary(base))?.as_integer()?;
+        let limit = self.value(frame, to, Some(&Type::Elementary(base)))?;
+        // It is compared as it is computed, also beyond the counter's type; a number has the counter's type.
+        let is_literal = literal_number(to).is_some();
+        let last = match limit.ty.elementary().filter(|it| self.promotes(*it) && !is_literal) {
+            Some(_) => limit.as_integer()?,
+            None => self.converted(limit, &Type::Elementary(base), to.span)?.as_integer()?,
+        };
         let step = match by {
             None => 1,
             // A negative literal steps down, also where the counter is unsigned.
@@ -245,7 +251,7 @@ impl<'a> Machine<'a> {
             let (low, high) = place.ty.range();
             if (low..=high).contains(&now) {
                 self.write(&place, &Value { ty: place.ty.clone(), cells: vec![integer_cell(base, now)] });
-            } else if goes_on(now) {
+            } else if goes_on(now) && base.holds(now) {
                 return Err(self.fault(FaultKind::SubrangeViolated, at));
             } else {
                 break;

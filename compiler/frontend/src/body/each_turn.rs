@@ -27,6 +27,10 @@ impl<'s> Checker<'_, 's> {
     /// Whether the loop runs otherwise here than one that looks at its limit and step once.
     pub(super) fn looks_in_each_turn(&self, head: &For, calls: &Calls, by: Option<&ast::Expr<'s>>, span: Span) -> bool {
         let rule = self.decl.dialect(span).rules().loop_limit.choice;
+        if matches!(head.counter.ty, Type::Subrange(..)) {
+            // A step out of the subrange is a fault, which the loop of the IR alone has.
+            return false;
+        }
         let changes =
             |it: &Expr| alias::changes(&self.frame(), &head.body, it) || alias::reads(&self.frame(), it, &head.counter);
         let step_changes = match &head.step {

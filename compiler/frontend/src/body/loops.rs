@@ -87,7 +87,7 @@ impl<'s> Checker<'_, 's> {
         body: &[ast::Statement<'s>],
         span: Span,
     ) -> Option<()> {
-        let Some((mut head, shown, mut calls)) = self.for_head(counter, from, to, by) else {
+        let Some((mut head, shown, calls)) = self.for_head(counter, from, to, by) else {
             // The body may hold mistakes of its own.
             self.loop_body(body);
             return None;
@@ -98,10 +98,6 @@ impl<'s> Checker<'_, 's> {
         head.body = self.for_body(shown.as_ref(), &head.counter, body, counter.span);
         self.counters.pop();
         if shown.is_none() && self.looks_in_each_turn(&head, &calls, by, span) {
-            return self.loop_by_turns(head, calls, by, span);
-        }
-        if shown.is_none() && calls.wide_step.is_some() {
-            self.keep_bounds(&mut head, &mut calls, span);
             return self.loop_by_turns(head, calls, by, span);
         }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
@@ -168,7 +164,7 @@ impl<'s> Checker<'_, 's> {
             true => self.step(by, ty, &mut wide_step),
             false => {
                 let limits = &mut last.iter_mut().chain(&mut calls.wide_limit).collect::<Vec<_>>();
-                self.after(limits, |this| this.step(by, ty, &mut wide_step))
+                self.after(limits, |this| this.step(by, ty, &mut None))
             }
         };
         if is_each_turn {
@@ -253,23 +249,6 @@ impl<'s> Checker<'_, 's> {
             Operand::Promoted(..) | Operand::Typed(_) | Operand::Integer(_) | Operand::Real { .. } => None,
         };
         (self.coerce(operand, ty, expr.span), wide)
-    }
-
-    /// Computes a limit and a step once, the step at its bits: its sign counts.
-    fn keep_bounds(&mut self, head: &mut For, calls: &mut Calls, span: Span) {
-        let limit = calls.wide_limit.take().unwrap_or_else(|| head.last.clone());
-        let mut kept = [None, None];
-        for (at, value) in [Some(limit), calls.wide_step.take()].into_iter().enumerate() {
-            kept[at] = value.map(|value| {
-                let place = self.temporary("bound", value.ty);
-                self.assign(place.clone(), value, span);
-                Expr::load(place, self.at(span))
-            });
-        }
-        [calls.wide_limit, calls.wide_step] = kept;
-        if let (Some(step), Some(ty)) = (&calls.wide_step, head.last.ty.elementary()) {
-            head.step = Step::Variable(stored(step.clone(), ty));
-        }
     }
 
     /// A FOR to a limit that is computed at more bits than its counter has: the number nearest to it is the limit. Where even
