@@ -696,6 +696,14 @@ impl<'s> Expr<'s> {
         }
     }
 
+    /// The variable that a member or an element is of: `a` of `a.b[1].c`.
+    pub(crate) fn variable(&self) -> Option<Name<'s>> {
+        match &self.kind {
+            ExprKind::Member(owner, _) | ExprKind::Index(owner, _) => owner.variable(),
+            _ => self.first_name(),
+        }
+    }
+
     /// `a.b.c`, where it is that: names and points.
     pub(crate) fn path(&self) -> Option<Path<'s>> {
         match &self.kind {

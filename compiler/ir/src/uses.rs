@@ -27,7 +27,7 @@ pub enum Part {
     Temp,
     /// A FOR that leaves its counter no value beyond its limit.
     LimitOfType,
-    /// A timer whose PT is not constant.
+    /// A timer whose PT changes while it may run. No program notes it: that shows when all is known.
     MovingPreset,
     /// An assignment to a variable of a subrange that faults. No program notes it, since most have none.
     Subrange,
@@ -44,12 +44,14 @@ pub enum Part {
     ShiftPastWidth,
     /// A result beyond a signed type of 32 or 64 bits, where that decides something.
     Overflow,
+    /// A result beyond a signed type of 32 or 64 bits, wherever it goes.
+    StoredOverflow,
     /// An index outside of its array that is reached. No program notes it.
     Index,
 }
 
 impl Part {
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -61,6 +63,7 @@ impl Part {
         Self::FractionBesideReal,
         Self::ShiftPastWidth,
         Self::Overflow,
+        Self::StoredOverflow,
         Self::Index,
     ];
 
@@ -78,6 +81,7 @@ impl Part {
             Self::FractionBesideReal => "a number with a fraction in an operation with a REAL",
             Self::ShiftPastWidth => "a shift past the width",
             Self::Overflow => "signed overflow",
+            Self::StoredOverflow => "a DINT or LINT that passes its range",
             Self::Index => "an index outside of its array",
         }
     }

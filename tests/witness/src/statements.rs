@@ -231,7 +231,14 @@ impl<'a> Machine<'a> {
             // A negative literal steps down, also where the counter is unsigned.
             Some(by) => match literal_number(by) {
                 Some(number) => number,
-                None => self.value_as(frame, by, &Type::Elementary(base))?.as_integer()?,
+                None => {
+                    // It counts as it is computed, also beyond the counter's type; but not beyond a subrange's base.
+                    let step = self.value(frame, by, Some(&Type::Elementary(base)))?;
+                    match step.ty.elementary().filter(|it| self.promotes(*it) && matches!(place.ty, Type::Elementary(_))) {
+                        Some(_) => step.as_integer()?,
+                        None => self.converted(step, &Type::Elementary(base), by.span)?.as_integer()?,
+                    }
+                }
             },
         };
         if let (Some(by), 0) = (by, step) {

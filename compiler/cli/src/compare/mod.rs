@@ -229,7 +229,7 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
         return Ok(Some(logix::Rewritten::by_user(sources)));
     }
     if args.to.dialect == Dialect::Logix && args.from.dialect != Dialect::Logix {
-        return Ok(logix::rewrite(&from.sources, args.from.dialect));
+        return logix::rewrite(&from.sources, args.from.dialect);
     }
     Ok(None)
 }

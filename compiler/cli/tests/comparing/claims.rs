@@ -1,7 +1,7 @@
 //! `staunch compare` claims no more than it has shown. What each program must come to follows from the systems' rules,
 //! which the test names.
 
-use super::programs::{ENABLED, Folder};
+use super::programs::{ENABLED, Folder, run, text};
 
 const OWN: Folder = Folder("claims");
 
@@ -262,6 +262,8 @@ fn what_a_system_does_otherwise_is_not_equal() {
         ("sum", "openplc", "b : BOOL", "b := n + 1 > n; IF b THEN q := 1; ELSE q := 0; END_IF", "signed overflow"),
         ("minus", "openplc4", "b : BOOL", "b := -n < 0; IF b THEN q := 1; ELSE q := 0; END_IF", "signed overflow"),
         ("half", "openplc", "b : BOOL", "q := (n + n) / 2;", "signed overflow"),
+        ("absolute", "openplc4", "b : BOOL", "q := ABS(n) / 2;", "signed overflow"),
+        ("chosen", "openplc", "b : BOOL", "CASE n + 1 OF 5: q := 1; ELSE q := 0; END_CASE", "signed overflow"),
         ("rest", "openplc", "m : DINT := -1", "m := -1; q := n MOD m;", "signed overflow"),
         (
             "kept",
@@ -294,14 +296,37 @@ fn what_a_system_does_otherwise_is_not_equal() {
         assert!(code == Some(4) && text.contains(why), "{name}: {text}");
     }
     // A limit that leaves the counter values is none, nor is one PT that every call gives.
-    let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i : INT; t : TON; END_VAR\n";
+    let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i : INT; t : TON; wait : TIME := T#20ms; u : ARRAY[1..2] OF TON; END_VAR\n";
     let bodies = [
         ("openplc4", "q := 0; FOR i := 0 TO k DO q := q + 1; END_FOR"),
         ("siemens", "IF b THEN t(IN := b, PT := T#20ms); ELSE t(IN := FALSE); END_IF"),
+        ("siemens", "t(IN := b, PT := wait); u[1](IN := b, PT := T#1s); u[2](IN := b, PT := T#2s);"),
     ];
     for (to, body) in bodies {
         let source = format!("{same}{body}\nEND_PROGRAM\n");
         let (code, text) = OWN.compare("same", &source, &["--from", "iec", "--to", to, "-A", "warnings"]);
         assert!(code == Some(0), "{to}: {text}");
     }
+}
+
+/// A DINT that passes its range is said to wrap, since C leaves it undefined: also where it is stored first.
+#[test]
+fn a_stored_overflow_is_said() {
+    let source = "PROGRAM p\nVAR_INPUT n : DINT; END_VAR\nVAR_OUTPUT q, r : DINT; END_VAR\nq := n + 1;\nr := q MOD 7;\nEND_PROGRAM\n";
+    let (_, text) = OWN.compare("stored", source, &["--from", "openplc", "--to", "openplc4"]);
+    assert!(text.contains("OPENPLC do not specify a DINT or LINT that passes its range (line 4); Staunch: wraps"), "{text}");
+    assert!(text.contains("OPENPLC4 do not specify"), "{text}");
+    let (_, text) = OWN.compare("small", &source.replace("DINT", "INT"), &["--from", "openplc", "--to", "openplc4"]);
+    assert!(!text.contains("passes its range"), "{text}");
+}
+
+/// A program's own block does not take the place of the instruction that its counters need in Logix.
+#[test]
+fn an_own_block_with_the_name_of_an_instruction_is_refused_for_logix() {
+    let source = "FUNCTION_BLOCK RES\nVAR_INPUT x : BOOL; END_VAR\nEND_FUNCTION_BLOCK\nPROGRAM p\nVAR_INPUT u, r : BOOL; END_VAR\n\
+                  VAR_OUTPUT q : BOOL; END_VAR\nVAR c : CTU; own : RES; END_VAR\nc(CU := u, R := r, PV := 3); q := c.Q; own(x := q);\nEND_PROGRAM\n";
+    let path = OWN.written("own_res.st", source);
+    let output = run(&format!("{path} --from iec --to logix"));
+    let text = text(&output.stderr);
+    assert!(output.status.code() == Some(2) && text.contains("the program's own `RES`"), "{text}");
 }

@@ -53,6 +53,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(text) = value.as_ref().filter(|it| has_texts && matches!(it.ty, Type::String(_))) {
             return self.case_of_text(text.clone(), arms, otherwise, span);
         }
+        value.iter().for_each(|it| self.note_selected(it));
         let value = value.and_then(|value| {
             let allowed = match value.ty {
                 Type::Elementary(it) if it.is_char() => has_texts,

@@ -102,7 +102,10 @@ impl<'s> Checker<'_, 's> {
         }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
         let local = head.counter.clone();
-        self.loop_to(head, calls.wide_limit, span)?;
+        match self.step_beyond_counter(&head, &calls) {
+            Some(step) => self.loop_by_wide_step(head, step, calls.wide_limit.as_ref(), span)?,
+            None => self.loop_to(head, calls.wide_limit, span)?,
+        }
         if let Some(shown) = &shown {
             self.show_counter(shown, &local, counter.span);
         }
@@ -164,7 +167,7 @@ impl<'s> Checker<'_, 's> {
             true => self.step(by, ty, &mut wide_step),
             false => {
                 let limits = &mut last.iter_mut().chain(&mut calls.wide_limit).collect::<Vec<_>>();
-                self.after(limits, |this| this.step(by, ty, &mut None))
+                self.after(limits, |this| this.step(by, ty, &mut wide_step))
             }
         };
         if is_each_turn {

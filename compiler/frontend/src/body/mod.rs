@@ -13,6 +13,7 @@ mod near;
 mod statement;
 mod suite;
 mod whole;
+mod wide_step;
 
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;

@@ -8,7 +8,6 @@ use super::order::Held;
 use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
 use crate::dialect::Dialect;
-use crate::dialect::rules::{Part, Use};
 use crate::types::signature::{Formal, Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
@@ -183,11 +182,6 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let at = self.at(span);
-        let is_timer = info.pin("ET").is_some();
-        let preset = info.inputs().position(|it| it.name == "PT").filter(|_| is_timer).and_then(|it| inputs[it]);
-        if preset.is_some_and(|it| parts.written[it].value().is_some_and(|it| it.as_const().is_none())) {
-            self.note_use(Use::Part(Part::MovingPreset), span);
-        }
         // What is left out holds what it was given last.
         let kept = |place: &Place, pin: usize| {
             let name = info.inputs().nth(pin).map(|it| it.name)?;

@@ -50,10 +50,13 @@ impl Checker<'_, '_> {
         );
     }
 
-    /// Notes where it shows that C leaves signed numbers beyond 32 or 64 bits undefined: the least one divided by -1, and a sum,
-    /// difference or product that is compared, chosen or divided at once. What is stored first has wrapped.
+    /// Notes where C leaves signed numbers beyond 32 or 64 bits undefined, and where that shows whatever the compiler's
+    /// options are: the least one divided by -1, and a sum, difference or product that is compared, chosen or divided at once.
     pub(super) fn note_undefined(&mut self, made: &Expr) {
         let ExprKind::Apply(op, operands) = &made.kind else { return };
+        if self.may_overflow(made) {
+            self.decl.program.uses.note(Use::Part(Part::StoredOverflow), made.at);
+        }
         let is_undefined = match op {
             Op::Div | Op::Mod | Op::DivOrZero | Op::ModOrZero => {
                 self.is_least_by_negative(operands) || operands.iter().any(|it| self.may_overflow(it))
@@ -69,6 +72,13 @@ impl Checker<'_, '_> {
         }
     }
 
+    /// So too where a CASE selects by it.
+    pub(crate) fn note_selected(&mut self, selector: &Expr) {
+        if self.may_overflow(selector) {
+            self.decl.program.uses.note(Use::Part(Part::Overflow), selector.at);
+        }
+    }
+
     fn is_least_by_negative(&self, operands: &[Expr]) -> bool {
         let [a, b] = operands else { return false };
         let [(least, _), (low, high)] = [a, b].map(|it| self.known_range(it));
@@ -80,7 +90,7 @@ impl Checker<'_, '_> {
         let whole = side.ty.elementary().and_then(|it| it.repr().range());
         match &side.kind {
             ExprKind::Convert(Conversion::Value | Conversion::Same, inner) => self.may_overflow(inner),
-            ExprKind::Apply(Op::Neg, operands) => {
+            ExprKind::Apply(Op::Neg | Op::Abs, operands) => {
                 let least = operands.first().map(|it| self.known_range(it).0);
                 is_wide(side) && least == whole.map(|it| it.0)
             }

@@ -3,7 +3,7 @@
 //! instances, as addresses are. Constants stay as they are declared.
 
 use crate::ast::{
-    Element, Expr, ExprKind, File, Initial, InitialKind, Item, PouKind, TypeKind, VarBlock, VarKind, each_part,
+    Element, Expr, ExprKind, File, Initial, InitialKind, Item, PouKind, TypeDecl, TypeKind, TypeSpec, VarBlock, VarKind, each_part,
 };
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -42,6 +42,7 @@ pub(super) struct Computed<'s> {
     functions: FxHashSet<Key<'s>>,
     /// PROGRAMs, whose variables others may name.
     programs: FxHashSet<Key<'s>>,
+    /// FUNCTION_BLOCKs and CLASSes, and the types that have one as a part.
     blocks: FxHashSet<Key<'s>>,
     methods: FxHashSet<Key<'s>>,
     getters: FxHashSet<Key<'s>>,
@@ -71,10 +72,8 @@ impl<'s> Variables<'s> {
             if matches!(decl.ty.kind, TypeKind::Reference { kind: RefKind::ReferenceTo, .. }) {
                 self.references.extend(names.clone());
             }
-            if let TypeKind::Named(path) = &decl.ty.kind
-                && let Some(ty) = path.last()
-            {
-                self.types.extend(names.clone().map(|it| (it, Key(ty.text))));
+            if let Some(ty) = named(&decl.ty) {
+                self.types.extend(names.clone().map(|it| (it, ty)));
             }
             self.names.extend(names);
         }
@@ -93,9 +92,30 @@ impl<'s> Computed<'s> {
         for item in files.iter().flat_map(|it| &it.items) {
             it.declare(item);
         }
+        let types = || files.iter().flat_map(|it| &it.items).filter_map(type_decls).flatten();
+        while types().filter(|decl| it.holds_instance(decl)).count() > 0 {}
         // What asks for a variable that is computed is, too.
         while computing().flat_map(|file| &file.items).filter(|item| it.find(item)).count() > 0 {}
         it
+    }
+
+    /// Notes a type that has an instance as a part; whether it was not known before.
+    fn holds_instance(&mut self, decl: &TypeDecl<'s>) -> bool {
+        let is_block = |it: &TypeSpec<'s>| named(it).is_some_and(|it| self.is_block(it));
+        let holds = match &decl.ty.kind {
+            TypeKind::Struct(fields) | TypeKind::Union(fields) => fields.iter().any(|it| is_block(&it.ty)),
+            TypeKind::Named(_) | TypeKind::Array { .. } => is_block(&decl.ty),
+            TypeKind::String { .. }
+            | TypeKind::Subrange { .. }
+            | TypeKind::Enum { .. }
+            | TypeKind::Reference { .. }
+            | TypeKind::Error => false,
+        };
+        holds && self.blocks.insert(Key(decl.name.text))
+    }
+
+    fn is_block(&self, ty: Key<'s>) -> bool {
+        self.blocks.contains(&ty) || staunch_runtime::BLOCKS.iter().any(|it| it.is_named(ty.0))
     }
 
     fn declare(&mut self, item: &Item<'s>) {
@@ -209,11 +229,10 @@ impl<'s> Computed<'s> {
 
     /// Whether an expression begins with an instance, whose variables have their values when it has started.
     fn is_instance(&self, expr: &Expr<'s>, pou: Option<Key<'s>>) -> bool {
-        let Some(name) = expr.first_name().map(|it| Key(it.text)) else { return false };
+        let Some(name) = expr.variable().map(|it| Key(it.text)) else { return false };
         let own = pou.and_then(|it| self.own.get(&it)).filter(|it| it.names.contains(&name));
         let ty = own.unwrap_or(&self.globals).types.get(&name);
-        let is_standard = |it: &Key<'_>| staunch_runtime::BLOCKS.iter().any(|block| block.is_named(it.0));
-        ty.is_some_and(|it| self.blocks.contains(it) || is_standard(it))
+        ty.is_some_and(|it| self.is_block(*it))
     }
 
     fn when_called(&self, callee: &Expr<'s>) -> Option<When> {
@@ -246,6 +265,28 @@ impl<'s> Computed<'s> {
     /// Whether a class has a PROPERTY that an initial value of an instance can assign.
     pub fn is_property(&self, class: Key<'s>, name: Key<'s>) -> bool {
         self.setters.get(&class).is_some_and(|it| it.contains(&name))
+    }
+}
+
+/// The type that is named, or that the elements of an array have.
+fn named<'s>(ty: &TypeSpec<'s>) -> Option<Key<'s>> {
+    match &ty.kind {
+        TypeKind::Named(path) => path.last().map(|it| Key(it.text)),
+        TypeKind::Array { element, .. } => named(element),
+        TypeKind::String { .. }
+        | TypeKind::Subrange { .. }
+        | TypeKind::Struct(_)
+        | TypeKind::Union(_)
+        | TypeKind::Enum { .. }
+        | TypeKind::Reference { .. }
+        | TypeKind::Error => None,
+    }
+}
+
+fn type_decls<'a, 's>(item: &'a Item<'s>) -> Option<&'a [TypeDecl<'s>]> {
+    match item {
+        Item::Types(it) => Some(it),
+        Item::Globals(_) | Item::Configuration(_) | Item::Pou(_) | Item::Test(_) => None,
     }
 }
 

@@ -41,7 +41,11 @@ impl Rewritten {
 }
 
 /// `None` where there is nothing to rewrite.
-pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
+///
+/// # Errors
+///
+/// Where the program declares what an instruction is called that it needs.
+pub fn rewrite(sources: &Sources, from: Dialect) -> Result<Option<Rewritten>, String> {
     let numbers = 0..u16::try_from(sources.files().len()).unwrap_or(u16::MAX);
     let files: Vec<File<'_>> = numbers.map(|it| parse_file(sources, it)).collect();
     let mut shapes = Shapes::of(&files, from);
@@ -63,7 +67,26 @@ pub fn rewrite(sources: &Sources, from: Dialect) -> Option<Rewritten> {
         all.push(writer.edits);
         shapes = writer.shapes;
     }
-    (!notes.is_empty()).then(|| Rewritten { sources: sources.with_texts(texts), notes, edits: all })
+    if let Some(name) = pous(&files).find(|it| is_called(it, &notes)) {
+        return Err(format!(
+            "the program's own `{name}` has the name of the instruction of Logix that its counters need there: rename it"
+        ));
+    }
+    Ok((!notes.is_empty()).then(|| Rewritten { sources: sources.with_texts(texts), notes, edits: all }))
+}
+
+/// The names of POUs that are those of instructions which the rewriting calls.
+fn pous<'f>(files: &'f [File<'f>]) -> impl Iterator<Item = &'f str> {
+    let names = files.iter().flat_map(|it| &it.items).filter_map(|it| match it {
+        Item::Pou(pou) => Some(pou.name.text),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    });
+    names.filter(|name| ["CTU", "CTD", "CTUD", "RES"].iter().any(|it| it.eq_ignore_ascii_case(name)))
+}
+
+fn is_called(name: &str, notes: &[(String, String)]) -> bool {
+    let call = format!("{}(", name.to_ascii_uppercase());
+    notes.iter().any(|(before, after)| after.contains(&call) && !before.to_ascii_uppercase().contains(&call))
 }
 
 fn globals<'f>(files: &'f [File<'f>]) -> impl Iterator<Item = &'f VarBlock<'f>> {

@@ -1,16 +1,28 @@
 //! What decides all that is to come of both programs, as a number.
 
-use super::settled::{Known, Settled};
+use super::settled::{self, Known, Settled};
 use super::side::Side;
 use super::{Pair, normal};
+use crate::compare::program::ranges::Range;
+use crate::compare::program::walked::Name;
 use staunch_host::Machine;
+use std::collections::HashMap;
 
 impl Pair {
     /// Looks for counts of which many are equivalent, by what is compared now.
     pub fn settle_counts(&mut self) {
-        let Self { sides, inputs, compared, counters, .. } = &*self;
-        self.settled = Settled::of(Known { sides, inputs, compared, counters });
+        self.settled = Settled::of(self.known());
         self.open = vec![false; self.counters.len()];
+    }
+
+    fn known(&self) -> Known<'_> {
+        let Self { sides, inputs, compared, counters, .. } = self;
+        Known { sides, inputs, compared, counters }
+    }
+
+    /// The values at the start of the variables that one side's program alone writes.
+    pub fn starts(&self, side: usize) -> HashMap<Name, Range> {
+        settled::starts(self.known(), side)
     }
 
     /// What decides all that is to come, as a number: two states with the same key behave the same way under

@@ -101,7 +101,7 @@ fn read(state: &[u8], (offset, repr): (usize, Repr)) -> Option<i128> {
 
 /// The values at the start of the variables that the program alone writes: of a member of several instances, from the least on
 /// to the greatest.
-fn starts(known: Known<'_>, side: usize) -> HashMap<Name, Range> {
+pub fn starts(known: Known<'_>, side: usize) -> HashMap<Name, Range> {
     let own = &known.sides[side];
     let mut found: HashMap<Name, Range> = HashMap::new();
     let mut outside = HashSet::new();

@@ -1,60 +1,121 @@
-//! Timers whose PT may change while they run: it is assigned beside the calls, or several calls give several.
+//! Timers whose PT may change while they run: it varies, or several calls and assignments give several.
 
+use super::ranges::{Range, Ranges};
 use super::walked::{Name, Walked};
-use staunch_ir::{Expr, ExprKind, Place, Program, Routine, RoutineId, StatementKind, Type, Value, visit};
+use staunch_ir::visit;
+use staunch_ir::{
+    BlockId, Expr, ExprKind, Place, Program, Projection, Routine, RoutineId, StatementKind, Type, Value,
+};
 use std::collections::HashMap;
 
-/// The first line that moves one.
-pub fn line(program: &Program) -> Option<u32> {
-    let mut given: HashMap<Name, Option<i128>> = HashMap::new();
-    let mut first: Option<u32> = None;
+/// What a call or an assignment gives as the PT.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Preset {
+    Constant(i128),
+    /// The call gives none: it is the one that is there, which may be the initial one.
+    Kept,
+    Varying,
+}
+
+/// The subscripts on the way to a timer, as far as they are constant.
+type Subscripts = Vec<Option<i128>>;
+
+#[derive(Debug)]
+struct Given {
+    subscripts: Subscripts,
+    preset: Preset,
+    line: u32,
+}
+
+/// The first line that moves one. `starts` are the values of variables at the start.
+pub fn line(program: &Program, starts: &HashMap<Name, Range>) -> Option<u32> {
+    let finder = Finder { program, ranges: Ranges::of(program, starts) };
+    let mut given: HashMap<Option<Name>, Vec<Given>> = HashMap::new();
     for (number, routine) in program.routines.iter().enumerate() {
         let at = (routine, RoutineId::next(number));
         visit::statements(&routine.body, &mut |statement| {
-            let moves = match &statement.kind {
-                StatementKind::Assign { target, .. } => is_preset(program, at, target),
-                StatementKind::CallBlock { block, inputs, .. } => called(program, at, block, inputs, &mut given),
-                _ => false,
+            let found = match &statement.kind {
+                StatementKind::Assign { target, value } => finder.assigned(at, target, value),
+                StatementKind::CallBlock { block, inputs, .. } => finder.called(at, block, inputs),
+                _ => None,
             };
-            let line = statement.at.line;
-            if moves {
-                first = Some(first.map_or(line, |it| it.min(line)));
+            if let Some((timer, preset)) = found {
+                let name = Walked::of(program, at, &timer).variable();
+                let subscripts = subscripts(&timer);
+                given.entry(name).or_default().push(Given { subscripts, preset, line: statement.at.line });
             }
         });
     }
-    first
+    // It is not known which timers those without a name are.
+    let moved = given.iter().flat_map(|(name, all)| {
+        all.iter().enumerate().filter(move |(at, it)| name.is_none() || moves(it, &all[..*at])).map(|it| it.1.line)
+    });
+    moved.min()
 }
 
-fn is_preset(program: &Program, at: (&Routine, RoutineId), place: &Place) -> bool {
-    let pin = Walked::of(program, at, place).pin;
-    pin.is_some_and(|(block, pin)| {
-        let info = block.info();
-        info.pin("ET").is_some() && info.pins.get(pin.index()).is_some_and(|it| it.name == "PT")
-    })
+fn moves(given: &Given, before: &[Given]) -> bool {
+    given.preset == Preset::Varying
+        || before.iter().any(|it| overlap(&it.subscripts, &given.subscripts) && it.preset != given.preset)
 }
 
-/// What a call has that gives no PT: the one that is there, which may be the initial one.
-const KEPT: Option<i128> = Some(-1);
+fn overlap(a: &Subscripts, b: &Subscripts) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.is_none() || b.is_none() || a == b)
+}
 
-/// Whether a call gives its timer another PT than a call before.
-fn called(
-    program: &Program,
-    at: (&Routine, RoutineId),
-    block: &Place,
-    inputs: &[Expr],
-    given: &mut HashMap<Name, Option<i128>>,
-) -> bool {
-    let Type::Block(id) = block.ty else { return false };
-    let preset = id.info().inputs().position(|it| it.name == "PT").filter(|_| id.info().pin("ET").is_some());
-    let Some(preset) = preset.and_then(|it| inputs.get(it)) else { return false };
-    let is_kept = matches!(&preset.kind, ExprKind::Load(place) if is_preset(program, at, place));
-    let input = id.info().inputs().position(|it| it.name == "IN").and_then(|it| inputs.get(it));
-    let is_off = input.and_then(Expr::as_const) == Some(Value::Bool(false));
-    if is_kept && is_off && id.info().name.contains("TON") {
-        // It does not run.
-        return false;
+fn subscripts(place: &Place) -> Subscripts {
+    let subscript = |it: &Projection| match it {
+        Projection::Index { index, .. } => Some(index.as_const().and_then(Value::as_integer)),
+        Projection::Field(_) | Projection::Deref { .. } => None,
+    };
+    place.projections.iter().filter_map(subscript).collect()
+}
+
+struct Finder<'p> {
+    program: &'p Program,
+    ranges: Ranges<'p>,
+}
+
+type At<'p> = (&'p Routine, RoutineId);
+
+impl Finder<'_> {
+    /// The timer whose PT is assigned.
+    fn assigned(&self, at: At<'_>, target: &Place, value: &Expr) -> Option<(Place, Preset)> {
+        self.is_preset(at, target).then(|| {
+            let mut timer = target.clone();
+            timer.projections.pop();
+            (timer, self.preset(at, value))
+        })
     }
-    let Some(name) = Walked::of(program, at, block).variable() else { return true };
-    let number = if is_kept { KEPT } else { preset.as_const().and_then(Value::as_integer) };
-    given.insert(name, number).is_some_and(|before| before != number)
+
+    fn called(&self, at: At<'_>, block: &Place, inputs: &[Expr]) -> Option<(Place, Preset)> {
+        let Type::Block(id) = block.ty else { return None };
+        let input = |name: &str| id.info().inputs().position(|it| it.name == name).and_then(|it| inputs.get(it));
+        let preset = input("PT").filter(|_| id.info().pin("ET").is_some())?;
+        let is_kept = matches!(&preset.kind, ExprKind::Load(place) if self.is_preset(at, place));
+        let is_off = input("IN").and_then(Expr::as_const) == Some(Value::Bool(false));
+        if is_kept && is_off && runs_while_on(id) {
+            return None;
+        }
+        Some((block.clone(), if is_kept { Preset::Kept } else { self.preset(at, preset) }))
+    }
+
+    fn preset(&self, at: At<'_>, value: &Expr) -> Preset {
+        match self.ranges.of_value(at, value) {
+            (least, most) if least == most => Preset::Constant(least),
+            _ => Preset::Varying,
+        }
+    }
+
+    fn is_preset(&self, at: At<'_>, place: &Place) -> bool {
+        let pin = Walked::of(self.program, at, place).pin;
+        pin.is_some_and(|(block, pin)| {
+            let info = block.info();
+            info.pin("ET").is_some() && info.pins.get(pin.index()).is_some_and(|it| it.name == "PT")
+        })
+    }
+}
+
+/// An on-delay does not run where its input is FALSE.
+fn runs_while_on(block: BlockId) -> bool {
+    block.info().name.contains("TON")
 }

@@ -1,19 +1,25 @@
 //! Where a program uses what its system computes otherwise than it is computed here: the rules that are known and not
 //! followed.
 
+use super::ranges::Range;
+use super::walked::Name;
 use super::moving_preset;
 use staunch_frontend::Dialect;
 use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
 use staunch_ir::{Field, Program, Section, Type};
 use staunch_runtime::Time;
 use staunch_runtime::time::MILLISECOND;
+use std::collections::HashMap;
 
 /// A sentence for each rule that the program's source uses, or whose type it is given from outside, or that its cycle in
 /// nanoseconds asks for.
-pub fn find(program: &Program, dialect: Dialect, cycle: Time) -> Vec<String> {
+///
+/// `starts` are the values of variables at the start.
+pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<Name, Range>) -> Vec<String> {
     let rows = NOT_FOLLOWED.iter().filter(|it| it.dialect == dialect);
     let found = rows.filter_map(|row| {
-        let moving = || moving_preset::line(program).filter(|_| row.uses == Use::Part(Part::MovingPreset));
+        let is_moving = row.uses == Use::Part(Part::MovingPreset);
+        let moving = || is_moving.then(|| moving_preset::line(program, starts)).flatten();
         let of_timers = || timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0);
         let line = used(program, row.uses).or_else(of_timers).or_else(moving)?;
         let system = dialect.name().to_ascii_uppercase();

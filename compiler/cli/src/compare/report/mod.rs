@@ -145,6 +145,7 @@ impl Report<'_> {
                 let shortest = shortest.then(|| judged.shortest(rows.len()));
                 text += &self.table(pair, world, rows, shortest, cause, findings);
                 text += &judged.beyond();
+                world.unfollowed.iter().for_each(|it| _ = writeln!(text, "Not followed: {it}"));
             }
             Verdict::Equal(why) => {
                 let _ = writeln!(text, "{from} and {to} are equal: {why}.");

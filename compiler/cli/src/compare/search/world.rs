@@ -72,6 +72,10 @@ impl World {
         let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
         computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
         beyond::note_counters(pair, &mut computed);
+        let unfollowed = pair.sides.iter().enumerate().flat_map(|(side, it)| {
+            unfollowed::find(&it.program, it.dialect, cycle, &pair.starts(side))
+        });
+        let unfollowed = unfollowed.collect();
         Ok(Self {
             alphabet,
             assumptions,
@@ -82,7 +86,7 @@ impl World {
             inputs_written: alphabet::are_written(pair, facts),
             habits,
             computed,
-            unfollowed: pair.sides.iter().flat_map(|it| unfollowed::find(&it.program, it.dialect, cycle)).collect(),
+            unfollowed,
             open: pair.sides.iter().flat_map(|it| unfollowed::open(&it.program, it.dialect)).collect(),
             in_common: alphabet::in_common(pair),
             tolerance: None,

@@ -107,7 +107,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_matiec(Use::Part(Part::ShiftPastWidth), SHIFTED),
     of_strucpp(Use::Part(Part::ShiftPastWidth), SHIFTED),
     of_matiec(Use::Part(Part::Overflow), OVERFLOWN),
-    of_strucpp(Use::Part(Part::Overflow), OVERFLOWN),
+    of_strucpp(Use::Part(Part::Overflow), OVERFLOWN_CPP),
     of_matiec(
         Use::Part(Part::Index),
         "it is not checked: what lies beyond the array is read or written; here it is a fault",
@@ -158,6 +158,9 @@ const SHIFTED: &str = "C leaves it undefined, and the compiler and the processor
 
 const OVERFLOWN: &str = "C leaves it undefined, and the compiler and the processor decide: on x86-64 `n + 1 > n` of a DINT is always \
                          TRUE, and its least number divided by -1 ends the program";
+
+const OVERFLOWN_CPP: &str = "C++ leaves it undefined, and the compiler and the processor decide: on x86-64 `n + 1 > n` of a DINT may be \
+                             TRUE with -O and is FALSE without, and its least number divided by -1 ends the program";
 
 const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
 
@@ -215,6 +218,9 @@ const fn edge(
 ) -> Edge {
     Edge { dialect, what, here, documented, uses }
 }
+
+/// The sum, difference or product, where it is not compared, chosen or divided at once: that is `Part::Overflow`.
+const PAST_RANGE: &str = "a DINT or LINT that passes its range";
 
 /// Functions on texts by position.
 const BY_POSITION: &[Use] =
@@ -326,6 +332,20 @@ pub const EDGES: &[Edge] = &[
         "the time up to that call counts; it times anew",
         "S7-1200 manual, 11/2011, table 7-19: nothing of it",
         &[],
+    ),
+    edge(
+        Dialect::Openplc,
+        PAST_RANGE,
+        "wraps",
+        "C11, 6.5: undefined; without -O, as OpenPLC v3 compiles, a stored one wraps; Runtime 4.0 compiles with -O3",
+        &[Use::Part(Part::StoredOverflow)],
+    ),
+    edge(
+        Dialect::Openplc4,
+        PAST_RANGE,
+        "wraps",
+        "C++17, 7.1: undefined; Runtime 4.1 compiles with -O1, whose optimizer may assume that it never happens",
+        &[Use::Part(Part::StoredOverflow)],
     ),
     edge(
         Dialect::Cscape,
