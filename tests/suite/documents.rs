@@ -38,8 +38,9 @@ fn each_table_in_documents_has_a_head() {
 }
 
 fn documents() -> Vec<PathBuf> {
-    let docs = std::fs::read_dir(project().join("docs")).into_iter().flatten().flatten().map(|it| it.path());
-    let all = [project().join("README.md")].into_iter().chain(docs);
+    let folders = ["docs", "docs/tutorials"].into_iter();
+    let docs = folders.flat_map(|it| std::fs::read_dir(project().join(it)).expect("the folder exists"));
+    let all = [project().join("README.md")].into_iter().chain(docs.flatten().map(|it| it.path()));
     all.filter(|it| it.is_file() && it.extension().is_some_and(|it| it == "md")).collect()
 }
 

@@ -57,7 +57,7 @@ pub struct Build {
     levels: Vec<(Level, String)>,
 }
 
-/// Why there is no output.
+/// Why the output is missing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Failed;
 

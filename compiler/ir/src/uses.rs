@@ -36,7 +36,7 @@ pub enum Part {
     /// A comparison of durations with one that is not a whole number of binary fractions of a second, or of two variables;
     /// and a literal with decimals of minutes, hours or days.
     ComparedTimes,
-    /// A timer in scans that are not a whole number of milliseconds apart. No program notes it: that is a matter of its run.
+    /// A timer in scans whose interval is not a whole number of milliseconds. No program notes it: that is a matter of its run.
     PartsOfMillisecond,
     /// A number with a fraction that a REAL does not hold exactly, in an operation with a REAL.
     FractionBesideReal,
@@ -77,7 +77,7 @@ impl Part {
             Self::Subrange => "a value outside of a subrange",
             Self::DivisionByZero => "integer division by 0",
             Self::ComparedTimes => "a comparison of TIMEs",
-            Self::PartsOfMillisecond => "a timer, with scans that are not a whole number of milliseconds apart",
+            Self::PartsOfMillisecond => "a timer, where the time between scans is not a whole number of milliseconds",
             Self::FractionBesideReal => "a number with a fraction in an operation with a REAL",
             Self::ShiftPastWidth => "a shift past the width",
             Self::Overflow => "signed overflow",

@@ -137,7 +137,7 @@ fn init(copies: &[TokenStream]) -> TokenStream {
         /// `state` points to writable memory of the machine's size and alignment.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn staunch_init(state: *mut u8) {
-            st_mark!("SAFETY: as the caller promises; a static is no part of the state.");
+            st_mark!("SAFETY: as the caller promises; a static is not part of the state.");
             unsafe {
                 state.write_bytes(0, size_of::<Machine>());
                 #machine

@@ -130,7 +130,7 @@ pub fn parse_duration(text: &str) -> Result<Time, String> {
 pub fn parse_priority(text: &str) -> Result<u8, String> {
     let highest = Pacing::HIGHEST_PRIORITY;
     let number = text.parse().ok().filter(|it| (1..=highest).contains(it));
-    number.ok_or_else(|| format!("`{text}` is no priority: they are 1 to {highest}"))
+    number.ok_or_else(|| format!("`{text}` is not a priority: write a number from 1 to {highest}"))
 }
 
 fn parse_cpu(text: &str) -> Result<usize, String> {

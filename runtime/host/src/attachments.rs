@@ -1,6 +1,6 @@
 //! Inputs and outputs of a running program: what connects the variables at addresses (`%IX0.0`) with the world outside.
 //!
-//! An attachment stands around each scan: [`before`](Attachment::before) writes inputs into the state,
+//! An attachment works around each scan: [`before`](Attachment::before) writes inputs into the state,
 //! [`after`](Attachment::after) shows the state's outputs outside. Between the two the program works on a state that nobody else sees, so the
 //! image is frozen, and what is shown is of one whole scan. Both run in the scan's thread: they copy bytes, and neither allocate nor wait.
 //! Whoever talks to a network does so in a thread of its own (`exchange` has what the two threads share).

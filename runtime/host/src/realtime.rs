@@ -69,7 +69,7 @@ impl Overrun {
     /// What a user writes.
     pub fn parse(text: &str) -> Result<Self, String> {
         let found = Self::ALL.iter().find(|it| it.0 == text);
-        found.map(|it| it.1).ok_or_else(|| format!("`{text}` is no policy: there are skip, catch-up and fault"))
+        found.map(|it| it.1).ok_or_else(|| format!("`{text}` is not a policy: write skip, catch-up or fault"))
     }
 }
 

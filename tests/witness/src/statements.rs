@@ -234,7 +234,11 @@ impl<'a> Machine<'a> {
                 None => {
                     // It counts as it is computed, also beyond the counter's type; but not beyond a subrange's base.
                     let step = self.value(frame, by, Some(&Type::Elementary(base)))?;
-                    match step.ty.elementary().filter(|it| self.promotes(*it) && matches!(place.ty, Type::Elementary(_))) {
+                    match step
+                        .ty
+                        .elementary()
+                        .filter(|it| self.promotes(*it) && matches!(place.ty, Type::Elementary(_)))
+                    {
                         Some(_) => step.as_integer()?,
                         None => self.converted(step, &Type::Elementary(base), by.span)?.as_integer()?,
                     }

@@ -314,7 +314,10 @@ fn what_a_system_does_otherwise_is_not_equal() {
 fn a_stored_overflow_is_said() {
     let source = "PROGRAM p\nVAR_INPUT n : DINT; END_VAR\nVAR_OUTPUT q, r : DINT; END_VAR\nq := n + 1;\nr := q MOD 7;\nEND_PROGRAM\n";
     let (_, text) = OWN.compare("stored", source, &["--from", "openplc", "--to", "openplc4"]);
-    assert!(text.contains("OPENPLC do not specify a DINT or LINT that passes its range (line 4); Staunch: wraps"), "{text}");
+    assert!(
+        text.contains("OPENPLC do not specify a DINT or LINT that passes its range (line 4); Staunch: wraps"),
+        "{text}"
+    );
     assert!(text.contains("OPENPLC4 do not specify"), "{text}");
     let (_, text) = OWN.compare("small", &source.replace("DINT", "INT"), &["--from", "openplc", "--to", "openplc4"]);
     assert!(!text.contains("passes its range"), "{text}");

@@ -176,6 +176,6 @@ END_PROGRAM
         let arguments = ["--from", "iec", "--to", "codesys", "--cycle", cycle, "--assume", &never];
         let (found, text) = OWN.compare(name, source, &arguments);
         assert_eq!(found, Some(code), "{text}");
-        assert_eq!(text.contains("scans that are not a whole number of milliseconds apart"), code == 4, "{text}");
+        assert_eq!(text.contains("the time between scans is not a whole number of milliseconds"), code == 4, "{text}");
     }
 }

@@ -241,7 +241,7 @@ fn shells_and_manuals_know_the_command() {
     let folder = Folder::new("manual");
     let help = folder.staunch("--help").out(0);
     let listed = help.lines().skip_while(|it| *it != "Commands:").skip(1).take_while(|it| !it.is_empty());
-    // The text of a command goes on further right.
+    // The text of a command continues further right.
     let starts = listed.filter_map(|it| it.strip_prefix("  ")).filter(|it| !it.starts_with(' '));
     let verbs: Vec<_> = starts.filter_map(|it| it.split_whitespace().next()).filter(|it| *it != "help").collect();
     assert!(verbs.contains(&"doctor"), "{help}");

@@ -256,7 +256,7 @@ fn damaged_files_are_reported_where_they_are_damaged() {
     folder.write("devices/pin-mapping.json", PINS);
     folder.write("pous/programs/more.json", "{ \"body\": 5, \"language\": 6, \"data\": 7 }");
     check(&folder, &["pous/programs/more.json:1:37: error[E0033]: `data` is a number here, and an object"]);
-    // Without these there is a project all the same.
+    // It is a project even without these.
     std::fs::remove_dir_all(folder.0.join("devices")).unwrap();
     std::fs::remove_file(folder.0.join("pous/programs/more.json")).unwrap();
     has(&folder.staunch("check .").err(0), &["W0413"]);
@@ -269,7 +269,7 @@ fn damaged_files_are_reported_where_they_are_damaged() {
 #[test]
 fn a_project_moves_to_another_system() {
     let folder = project("openplc-moved");
-    // The two keep other variables over a restart, which is no matter of the files.
+    // The two keep different variables over a restart, which has nothing to do with the files.
     folder.staunch("compare . --from openplc4 --to codesys --write codesys.st").out(1);
     has(&folder.read("codesys.st"), &["full AT %IX0.0 : BOOL; (* the float *)", "level AT %MW0 : UINT := 20;"]);
     folder.staunch("check codesys.st --dialect codesys").err(0);

@@ -1,4 +1,4 @@
-//! What an executable takes for a scan beside its program, without a trace.
+//! What an executable takes for a scan in addition to its program, without a trace.
 
 use crate::measure::{ONE_MEMCPY, succeeds};
 use crate::perf;

@@ -40,7 +40,7 @@ impl<'s> Checker<'_, 's> {
         let calls = !calls.limit.is_empty() || !calls.step.is_empty();
         match rule {
             LoopLimit::Once => false,
-            // A step of 0 is no fault there.
+            // A step of 0 is not a fault there.
             LoopLimit::EachTurn => calls || changes(&head.last) || matches!(head.step, Step::Variable(_)),
             LoopLimit::EachTurnUpward => calls || changes(&head.last) || step_changes || !has_known_sign(head, by),
         }

@@ -255,7 +255,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A FOR to a limit that is computed at more bits than its counter has: the number nearest to it is the limit. Where even
-    /// the least value of the counter is beyond it, there is no turn.
+    /// the least value of the counter is beyond it, the loop has no turn.
     fn loop_to(&mut self, mut head: For, wide: Option<Expr>, span: Span) -> Option<()> {
         let at = self.at(span);
         let whole = head.last.ty.elementary().and_then(|it| it.repr().range());

@@ -8,7 +8,7 @@ use crate::expr::operand::{Operand, stored};
 use staunch_ir::{Block, Conversion, Elementary, Expr, For, Op, Place, Statement, StatementKind, Type, turns};
 use staunch_runtime::FaultKind;
 
-/// A step is looked at in it, beside a counter of fewer bits.
+/// The type in which the step and the counter, which has fewer bits, are added.
 const WIDE: Type = Type::Elementary(Elementary::Lint);
 
 impl Checker<'_, '_> {
@@ -41,8 +41,7 @@ impl Checker<'_, '_> {
         };
         let (then, otherwise) = (ends(Op::Le)?, ends(Op::Ge)?);
         let goes_up = self.step_is(Op::Gt, &step, span)?;
-        let mut body =
-            vec![Statement::new(StatementKind::If { condition: goes_up.clone(), then, otherwise }, at)];
+        let mut body = vec![Statement::new(StatementKind::If { condition: goes_up.clone(), then, otherwise }, at)];
         let turn = body.len();
         body.extend(head.body);
 

@@ -302,7 +302,7 @@ fn formal<'a, 's>(signature: &'a Signature<'s>, name: &str) -> Option<&'a Formal
     signature.formals.iter().find(|it| it.name.text.eq_ignore_ascii_case(name))
 }
 
-/// A POU's own parameter of this name, if it is a BOOL: one of another type is a parameter like any other.
+/// A POU's own parameter with this name, if it is a BOOL: one of another type is a parameter like any other.
 fn own<'a, 's>(signature: &'a Signature<'s>, name: &str) -> Option<&'a Formal<'s>> {
     formal(signature, name).filter(|it| it.resolved.ty == Type::BOOL)
 }

@@ -3,7 +3,8 @@
 //! instances, as addresses are. Constants stay as they are declared.
 
 use crate::ast::{
-    Element, Expr, ExprKind, File, Initial, InitialKind, Item, PouKind, TypeDecl, TypeKind, TypeSpec, VarBlock, VarKind, each_part,
+    Element, Expr, ExprKind, File, Initial, InitialKind, Item, PouKind, TypeDecl, TypeKind, TypeSpec, VarBlock,
+    VarKind, each_part,
 };
 use crate::spelling::Key;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -277,7 +277,7 @@ fn alias<'t, 's: 't>() -> impl Rule<'t, 's, Name<'s>> {
     ahead(ends).ignore_then(name())
 }
 
-/// `AT %IX0.0`; in a structure `AT %B4` and `AT %X0.3`. What has no name of its own has no alias.
+/// `AT %IX0.0`; in a structure `AT %B4` and `AT %X0.3`. A member without a name of its own has no alias.
 fn address<'t, 's: 't>(has_alias: bool) -> impl Rule<'t, 's, Option<Name<'s>>> {
     let relative = token(Kind::Part).then(token(Kind::Dot).ignore_then(token(Kind::Integer)).or_not());
     let relative = relative.map(|(start, end)| end.map_or(start, |it| start.to(it)));

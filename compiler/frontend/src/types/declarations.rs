@@ -627,7 +627,7 @@ impl<'s> Declarations<'s> {
         let routines = self.routines_on(ty, name.text);
         if let Some((_, declared)) = routines.and_then(|it| it.setter.or(it.getter)) {
             return self.report(
-                Diagnostic::new(Code::E0107, name.span, format!("the PROPERTY `{}` is no variable", name.text))
+                Diagnostic::new(Code::E0107, name.span, format!("the PROPERTY `{}` is not a variable", name.text))
                     .label("nothing can call its SET here")
                     .other(declared, "declared here")
                     .help("give it a value where a variable of the type is declared, or assign it before it is used"),

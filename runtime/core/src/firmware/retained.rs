@@ -36,7 +36,7 @@ pub enum NotRetained {
 impl fmt::Display for NotRetained {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Missing => "there are no retained variables",
+            Self::Missing => "the program has no retained variables",
             Self::Damaged => "the retained variables are damaged: their checksum does not match",
             Self::OtherProgram => "the retained variables are those of another program",
         })

@@ -9,7 +9,7 @@ pub(crate) enum Ended {
     Fault,
 }
 
-/// What stands around each scan. None of it waits or allocates, but for the end.
+/// Work before and after each scan. It neither waits nor allocates, except at the end.
 pub(crate) trait Attachment {
     /// Writes inputs, and what the world outside has written elsewhere, into the state.
     fn before(&mut self, machine: &mut dyn Machine);

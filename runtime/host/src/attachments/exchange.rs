@@ -1,7 +1,7 @@
 //! What the scan's thread and the threads of a server share: the values of the last scan, and what clients have written.
 //!
 //! The values are in two boxes. One client's request at a time is answered, and that holds one box at most, while it copies: the
-//! other is free for the scan, which thus never waits. What is written goes into a list under a lock that is held while one request's
+//! other is free for the scan, which thus never waits. Written values go into a list under a lock that is held while one request's
 //! values are added; a scan that finds it taken leaves the list to the next scan. A request's values are together in one scan.
 
 use super::points::Point;

@@ -63,13 +63,13 @@ pub(super) fn place(point: &Point) -> usize {
 }
 
 impl Image {
-    /// Opens or makes the image of this name. What is in its inputs stays.
+    /// Opens the image with this name, or makes it. Its inputs keep their values.
     pub fn open(name: &str) -> io::Result<Self> {
         let mapping = Mapping::open(name, SIZE)?;
         let (magic, version) = (mapping.long(0), mapping.double(VERSION_AT));
         let known = [(0, 0), (MAGIC, VERSION)];
         if !known.contains(&(magic.load(Ordering::Relaxed), version.load(Ordering::Relaxed))) {
-            let text = "it is no process image of this version: remove it, or write another name";
+            let text = "it is not a process image of this version: remove it, or write another name";
             return Err(io::Error::other(text));
         }
         version.store(VERSION, Ordering::Relaxed);

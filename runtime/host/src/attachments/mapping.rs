@@ -57,7 +57,7 @@ impl Mapping {
         let file = options.read(true).write(true).create(true).mode(MODE).custom_flags(NO_FOLLOW).open(path)?;
         let metadata = file.metadata()?;
         if !metadata.is_file() {
-            return Err(io::Error::other("it is no file"));
+            return Err(io::Error::other("it is not a regular file"));
         }
         // SAFETY: it takes any numbers; the descriptor is open.
         if unsafe { flock(file.as_raw_fd(), EXCLUSIVE | AT_ONCE) } != 0 {
@@ -68,7 +68,7 @@ impl Mapping {
             Ok(it) if it == size => {}
             _ => {
                 return Err(io::Error::other(
-                    "it is no process image of this version: remove it, or write another name",
+                    "it is not a process image of this version: remove it, or write another name",
                 ));
             }
         }
@@ -134,7 +134,7 @@ impl Mapping {
         }
     }
 
-    /// Stores a value unless another than `old` is there; `false` if it is.
+    /// Stores a value if the present one is `old`; `false` if it is not.
     pub fn replace(self, width: Width, position: usize, old: u64, new: u64) -> bool {
         match width {
             Width::Bit => self.replace_bit(position, old, new),

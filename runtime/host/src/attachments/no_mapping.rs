@@ -1,4 +1,4 @@
-//! Where there is no `/dev/shm`: no mapping can be made.
+//! Systems without `/dev/shm`: no mapping can be made.
 
 use super::points::Width;
 use std::io;

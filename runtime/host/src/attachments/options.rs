@@ -3,7 +3,7 @@
 /// What a run in real time is connected with.
 #[derive(Clone, Debug, Default)]
 pub struct Io {
-    /// In the order in which they stand around a scan: where two write one input, the later one counts.
+    /// In the order in which they work around a scan: where two write one input, the later one counts.
     pub connections: Vec<Connection>,
     pub at_end: AtEnd,
 }
@@ -36,7 +36,7 @@ impl Connection {
         match text.split_once(':') {
             Some(("shm", name)) => Self::shared_memory(name),
             Some(("modbus", address)) => Self::modbus(address),
-            _ => Err(format!("`{text}` is no connection: there are shm:NAME and modbus:ADDRESS:PORT")),
+            _ => Err(format!("`{text}` is not a connection: write shm:NAME or modbus:ADDRESS:PORT")),
         }
     }
 
@@ -44,7 +44,7 @@ impl Connection {
         let is_name = !name.is_empty() && !name.contains(['/', '\0']) && name != "." && name != "..";
         match is_name {
             true => Ok(Self::SharedMemory(name.to_owned())),
-            false => Err(format!("`{name}` is no name in /dev/shm: write one without `/`, as shm:plant")),
+            false => Err(format!("`{name}` is not a name in /dev/shm: write one without `/`, as in shm:plant")),
         }
     }
 
@@ -52,7 +52,7 @@ impl Connection {
         let parts = address.rsplit_once(':').filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
         match parts {
             Some(_) => Ok(Self::Modbus(address.to_owned())),
-            None => Err(format!("`{address}` is no address and port: write modbus:127.0.0.1:502")),
+            None => Err(format!("`{address}` is not an address and port: write, for example, modbus:127.0.0.1:502")),
         }
     }
 }

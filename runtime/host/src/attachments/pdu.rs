@@ -29,7 +29,7 @@ enum Exception {
     Value = 3,
 }
 
-/// Appends the answer to a request, both without the header. What is refused has changed nothing.
+/// Appends the answer to a request, both without the header. A refused request has changed nothing.
 pub(super) fn answer(request: &[u8], registers: &mut Registers, answer: &mut Vec<u8>) {
     let start = answer.len();
     let (function, rest) = request.split_first().map_or((0, request), |(function, rest)| (*function, rest));

@@ -86,7 +86,7 @@ impl Registers {
         Self { tables, links, points: places, written, scan: 0, writes: Vec::new() }
     }
 
-    /// Sees the last scan. What was written and is in no scan yet stays as it was written.
+    /// Sees the last scan. A value that was written and that no scan has used yet stays as it was written.
     pub fn update(&mut self, exchange: &Exchange) {
         let Self { tables, points, written, scan, .. } = self;
         exchange.see_newer(*scan, |shown| {

@@ -206,7 +206,7 @@ fn begin(shared: &Arc<Shared>, number: u64, stream: TcpStream) -> io::Result<()>
     thread::Builder::new().name("modbus client".to_owned()).stack_size(STACK).spawn(serving).map(drop)
 }
 
-/// Answers a client until it goes away, or sends what is no frame.
+/// Answers a client until it disconnects, or sends something that is not a frame.
 fn serve(shared: &Shared, number: u64, mut stream: TcpStream) -> io::Result<()> {
     stream.set_nodelay(true)?;
     stream.set_read_timeout(Some(NAP))?;

@@ -1,4 +1,4 @@
-//! A process image in shared memory, around a scan. What is outside reads and writes it at any time; `image` has the layout and how each
+//! A process image in shared memory, around a scan. Other processes read and write it at any time; `image` has the layout and how each
 //! side gets whole values.
 //!
 //! Inputs are what is outside: each scan has all of them. Outputs are the program's. Memory (`%M`) belongs to both: a value there that is

@@ -43,7 +43,7 @@ impl Watchdog {
         let manager = Manager::find();
         let limits = [limit, device.as_ref().map(|_| DEVICE_LIMIT), manager.as_ref().and_then(|it| it.limit)];
         let Some(shortest) = limits.into_iter().flatten().min() else {
-            // Who only wants to know that it has started is told here.
+            // This answers those that only wait for its start.
             manager.iter().for_each(|it| it.tell("READY=1"));
             return Ok(None);
         };

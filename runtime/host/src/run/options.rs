@@ -66,7 +66,7 @@ pub struct Options {
     pub io: Io,
     /// Prints nothing but errors and the trace.
     pub quiet: bool,
-    /// Prints the last scans as a table, if there is no trace.
+    /// Prints the last scans as a table, if no trace is asked for.
     pub table: bool,
     /// Prints what the run came to as JSON, in place of the table.
     pub json: bool,
@@ -109,7 +109,7 @@ impl Options {
         }
     }
 
-    /// On standard output, but for a trace that is there.
+    /// On standard output, unless the trace is written there.
     pub(super) fn print_json(&self, object: &str) -> Result<(), Error> {
         let line = format!("{object}\n");
         let written = match self.trace.as_deref().is_some_and(|it| it.as_os_str() == "-") {

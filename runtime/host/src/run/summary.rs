@@ -52,7 +52,7 @@ impl Summary {
     }
 }
 
-/// What is printed of a run in real time while it goes on: for people, or as JSON.
+/// What is printed of a run in real time while it lasts: for people, or as JSON.
 pub(super) fn figures_text(figures: &Figures) -> String {
     figures.table()
 }

@@ -20,7 +20,7 @@ pub(crate) struct Table {
     rows: VecDeque<Kept>,
     /// Characters in a line.
     width: usize,
-    /// Where the columns lie in the state, in their order; neighbours are one range.
+    /// The places of the columns in the state, in their order; neighbours are one range.
     parts: Vec<Range<usize>>,
 }
 

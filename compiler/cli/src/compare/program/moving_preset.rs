@@ -3,16 +3,14 @@
 use super::ranges::{Range, Ranges};
 use super::walked::{Name, Walked};
 use staunch_ir::visit;
-use staunch_ir::{
-    BlockId, Expr, ExprKind, Place, Program, Projection, Routine, RoutineId, StatementKind, Type, Value,
-};
+use staunch_ir::{BlockId, Expr, ExprKind, Place, Program, Projection, Routine, RoutineId, StatementKind, Type, Value};
 use std::collections::HashMap;
 
 /// What a call or an assignment gives as the PT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Preset {
     Constant(i128),
-    /// The call gives none: it is the one that is there, which may be the initial one.
+    /// The call gives none: it keeps the last one, or the initial one.
     Kept,
     Varying,
 }

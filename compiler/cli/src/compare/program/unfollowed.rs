@@ -1,9 +1,9 @@
 //! Where a program uses what its system computes otherwise than it is computed here: the rules that are known and not
 //! followed.
 
+use super::moving_preset;
 use super::ranges::Range;
 use super::walked::Name;
-use super::moving_preset;
 use staunch_frontend::Dialect;
 use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
 use staunch_ir::{Field, Program, Section, Type};

@@ -72,9 +72,11 @@ impl World {
         let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
         computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
         beyond::note_counters(pair, &mut computed);
-        let unfollowed = pair.sides.iter().enumerate().flat_map(|(side, it)| {
-            unfollowed::find(&it.program, it.dialect, cycle, &pair.starts(side))
-        });
+        let unfollowed = pair
+            .sides
+            .iter()
+            .enumerate()
+            .flat_map(|(side, it)| unfollowed::find(&it.program, it.dialect, cycle, &pair.starts(side)));
         let unfollowed = unfollowed.collect();
         Ok(Self {
             alphabet,

@@ -125,7 +125,7 @@ fn clients_see_and_write_whole_scans() {
                 for turn in 0..300_u16 {
                     let words = client.words(HOLDING, 20, 21);
                     assert_eq!(words[0], words[20]);
-                    // %MD500 and %MD520, 40 registers apart.
+                    // %MD500 and %MD520, with 40 registers between them.
                     let value = [turn, turn << 1 | number];
                     let mut values = vec![0; 42];
                     values[..2].copy_from_slice(&value);

@@ -37,7 +37,7 @@ fn name(of: &str) -> String {
 impl Image {
     fn open(name: &str) -> Self {
         let path = PathBuf::from("/dev/shm").join(name);
-        until("the image is there", || std::fs::metadata(&path).is_ok_and(|it| it.len() == SIZE));
+        until("the image exists", || std::fs::metadata(&path).is_ok_and(|it| it.len() == SIZE));
         let file = OpenOptions::new().read(true).write(true).open(&path).unwrap();
         let image = Self(path, file);
         until("it runs", || image.number::<4>(STATE) == 1);

@@ -101,7 +101,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_strucpp(
         Use::Part(Part::Enable),
         "a statement with a call whose EN is FALSE is left out, so that its variable keeps its value; within an expression EN is \
-         passed over, and a block's own input of that name is never set",
+         passed over, and a block's own input with that name is never set",
     ),
     of_strucpp(Use::Part(Part::Temp), "it keeps its value from call to call"),
     of_matiec(Use::Part(Part::ShiftPastWidth), SHIFTED),
@@ -166,7 +166,7 @@ const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is
 
 const ENDLESS: &str = "the counter wraps, and the loop does not end";
 
-const PARTS: &str = "seconds and nanoseconds are kept apart: `T#500ms + T#500ms = T#1s` is FALSE, and a literal may lack a \
+const PARTS: &str = "seconds and nanoseconds are separate: `T#500ms + T#500ms = T#1s` is FALSE, and a literal may lack a \
                      nanosecond: `T#1ms` is 999999 ns on x86-64";
 
 const BEFORE: &str = "the process ends where P is 0";

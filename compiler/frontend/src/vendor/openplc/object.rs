@@ -91,7 +91,7 @@ impl<'t> Object<'t> {
     }
 }
 
-/// Messages point at one character of what may go on over many lines.
+/// Messages point at one character of what may extend over many lines.
 fn first(place: &Range<usize>) -> Range<usize> {
     place.start..place.end.min(place.start + 1)
 }
