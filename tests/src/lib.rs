@@ -2,6 +2,7 @@
 //! Rust and native code must do the same, and what the files next to a case say.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+pub mod bounded;
 pub mod case;
 pub mod scan;
 

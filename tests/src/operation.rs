@@ -199,7 +199,7 @@ fn class(task: Task, state: StructId, body: RoutineId) -> Class {
 }
 
 fn instance(task: Task, program: ClassId) -> Instance {
-    Instance { name: format!("run_{}", task.name().to_lowercase()), program, interval: None, priority: 0 }
+    Instance { name: format!("run_{}", task.name().to_lowercase()), program, task: None, interval: None, priority: 0 }
 }
 
 /// Values at which operations are likely to differ.

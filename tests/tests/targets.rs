@@ -1,14 +1,13 @@
 //! Other machines than this one do what this one does: native code for 64 bits, Rust for 32 bits
 //! and for a microcontroller, all run by QEMU.
-//!
-//! Where a tool is missing a test says `SKIPPED` on standard error; under `CI` it fails.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod support;
+
 use std::fs;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::sync::OnceLock;
+use support::{folder, have, project, staunch, succeed};
 
 /// A foreign machine with Linux, and the tools for it as Debian names them.
 struct Machine {
@@ -79,67 +78,6 @@ left := left - 1;
 share := 100 / left;
 END_PROGRAM
 ";
-
-fn project() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
-}
-
-/// A folder of a test's own.
-fn folder(name: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("targets").join(name);
-    fs::create_dir_all(&folder).unwrap();
-    folder
-}
-
-/// The command, built together with this test.
-fn staunch() -> Command {
-    static BUILT: OnceLock<PathBuf> = OnceLock::new();
-    let path = BUILT.get_or_init(|| {
-        let test = std::env::current_exe().unwrap();
-        let profile = test.parent().and_then(Path::parent).unwrap();
-        let name = profile.file_name().unwrap().to_string_lossy().replace("debug", "dev");
-        let mut cargo = Command::new(env!("CARGO"));
-        // With the features of the whole workspace, as its tests are compiled: alone it would be compiled again.
-        cargo.args(["build", "--quiet", "--workspace", "--bin", "staunch", "--profile", &name, "--target-dir"]);
-        succeed(cargo.arg(profile.parent().unwrap()).current_dir(project()));
-        profile.join("staunch")
-    });
-    let mut command = Command::new(path);
-    command.env("STAUNCH_CACHE", folder("cache")).env_remove("CC").env("NO_COLOR", "1").current_dir(project());
-    command
-}
-
-fn succeed(command: &mut Command) -> String {
-    let output = command.output().unwrap_or_else(|error| panic!("{command:?}: {error}"));
-    assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
-
-/// Whether everything is available. Missing tools are reported past the test runner, which keeps the output of
-/// tests that pass.
-fn have(test: &str, tools: &[&str], target: &str) -> bool {
-    let mut missing: Vec<String> = tools.iter().filter(|it| !is_installed(it)).map(|it| format!("`{it}`")).collect();
-    if !has_library(target) {
-        missing.push(format!("Rust's library for {target}"));
-    }
-    if missing.is_empty() {
-        return true;
-    }
-    let text = format!("SKIPPED: {test}: there is no {}", missing.join(", no "));
-    assert!(std::env::var_os("CI").is_none(), "{text}");
-    let _ = writeln!(std::io::stderr(), "\n{text}\n");
-    false
-}
-
-fn is_installed(tool: &str) -> bool {
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    std::env::split_paths(&path).any(|it| it.join(tool).is_file())
-}
-
-fn has_library(target: &str) -> bool {
-    let output = Command::new("rustc").args(["--print", "target-libdir", "--target", target]).output();
-    output.is_ok_and(|it| Path::new(String::from_utf8_lossy(&it.stdout).trim()).is_dir())
-}
 
 /// A program and what drives it.
 struct Subject {
@@ -301,6 +239,101 @@ fn a_library_leaves_main_to_c() {
         if machine.has_tools(&format!("a library for C on {}", machine.target)) {
             let arguments = ["--target", machine.target, "--backend", machine.backend];
             links_into_c(&name, machine.compiler, &arguments, |it| machine.emulate(it));
+        }
+    }
+}
+
+/// Calls scans on a stack that was filled before, and prints how much of it they changed.
+const PAINTED: &str = r#"
+#include "plc.h"
+#include <stdio.h>
+#include <string.h>
+#include <ucontext.h>
+enum { SIZE = 1 << 18, PAINT = 0xA5, SCANS = 400 };
+static _Alignas(64) uint8_t stack[SIZE];
+static _Alignas(64) uint8_t state[STAUNCH_STATE_SIZE];
+static ucontext_t here, there;
+static uint64_t nothing(uint8_t *state, staunch_context *cx, uint32_t instance) { return 0; }
+static uint64_t (*volatile called)(uint8_t *, staunch_context *, uint32_t);
+static staunch_context cx;
+static volatile long used;
+static void call(void) {
+    called(state, &cx, 0);
+    long at = 0;
+    while (at < SIZE && stack[at] == PAINT) at++;
+    used = SIZE - at;
+}
+static long deepest(void) {
+    memset(stack, PAINT, SIZE);
+    getcontext(&there);
+    there.uc_stack.ss_sp = stack;
+    there.uc_stack.ss_size = SIZE;
+    there.uc_link = &here;
+    makecontext(&there, call, 0);
+    swapcontext(&here, &there);
+    return used;
+}
+int main(void) {
+    called = nothing;
+    long before = deepest(), most = 0;
+#ifdef __x86_64__
+    before -= 8; /* The address to return to. */
+#endif
+    called = staunch_scan;
+    staunch_init(state);
+    for (int scan = 0; scan < SCANS; scan++) {
+        cx = (staunch_context){ scan * 10000000ll, scan == 0, STAUNCH_TURNS, 10000000 };
+        long depth = deepest() - before;
+        if (depth > most) most = depth;
+    }
+    printf("%ld\n", most);
+    return 0;
+}
+"#;
+
+/// The stack that scans of a program use, and the one that is reported.
+fn stack_of(source: &Path, target: &str, compiler: &str, run: &dyn Fn(&Path) -> Command) -> (u64, u64) {
+    let folder = folder(&format!("stack-{target}"));
+    let make = |arguments: &[&str], file: &str| {
+        let mut command = staunch();
+        command.args(["build", "-q"]).args(arguments).arg(source).arg("-o").arg(folder.join(file));
+        succeed(&mut command);
+    };
+    make(&["--emit", "header"], "plc.h");
+    make(&["--emit", "lib", "--target", target], "libplc.a");
+    fs::write(folder.join("main.c"), PAINTED).unwrap();
+    let program = folder.join("program");
+    let mut command = Command::new(compiler);
+    command.args(["-O1", "-fno-optimize-sibling-calls", "main.c", "libplc.a", "-lm", "-o"]).arg(&program);
+    succeed(command.current_dir(&folder));
+    let used = succeed(&mut run(&program)).trim().parse().unwrap();
+    let mut report = staunch();
+    let report = succeed(report.args(["report", "--message-format", "json", "--target", target]).arg(source));
+    let report: serde_json::Value = serde_json::from_str(report.lines().last().unwrap()).unwrap();
+    (used, report["tasks"][0]["stack_bytes"].as_u64().unwrap())
+}
+
+#[test]
+fn a_scan_uses_no_more_of_the_stack_than_is_reported() {
+    const HOST: &str = "x86_64-unknown-linux-gnu";
+    let subjects = ["small_plant", "parking_garage", "four_families", "typed_counters"].map(example);
+    let subjects = || subjects.iter().map(|it| &it.source);
+    let maths = written("maths", MATHS, "200").source;
+    let hold = |target: &str, compiler: &str, run: &dyn Fn(&Path) -> Command| {
+        for source in subjects().chain([&maths]) {
+            let (used, reported) = stack_of(source, target, compiler, run);
+            assert!(used <= reported, "{} on {target}: {used} of {reported}", source.display());
+            // What is in the runtime is said with room to spare.
+            let is_own = *source != maths && reported < 300;
+            assert!(!is_own || reported <= 2 * used + 32, "{} on {target}: {used} of {reported}", source.display());
+        }
+    };
+    if have("the stack of this machine", &["cc"], HOST) {
+        hold(HOST, "cc", &|it| Command::new(it));
+    }
+    for machine in [&AARCH64, &RISCV64] {
+        if machine.has_tools(&format!("the stack of {}", machine.target)) {
+            hold(machine.target, machine.compiler, &|it| machine.emulate(it));
         }
     }
 }

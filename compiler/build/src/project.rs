@@ -15,6 +15,9 @@ pub struct Project {
     pub program: Option<String>,
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
+    /// The most instructions that the scan of a task may run, and the most bytes of its stack: of native code.
+    pub max_scan_instructions: Option<u64>,
+    pub max_stack: Option<u64>,
     pub ctu_stop_at_pv: bool,
     /// `openplc4-cd-edge = "rising"`.
     pub openplc4_cd_rises: bool,
@@ -129,13 +132,15 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 18] = [
+const SETTINGS: [&str; 20] = [
     "dialect",
     "files",
     "libraries",
     "program",
     "cycle",
     "loop-budget",
+    "max-scan-instructions",
+    "max-stack",
     "ctu-stop-at-pv",
     "openplc4-cd-edge",
     "s7-ld",
@@ -158,6 +163,8 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "program" => project.program = Some(text(key, value)?),
         "cycle" => project.cycle = Some(text(key, value)?),
         "loop-budget" => project.loop_budget = Some(number(key, value)?),
+        "max-scan-instructions" => project.max_scan_instructions = Some(number(key, value)?),
+        "max-stack" => project.max_stack = Some(number(key, value)?),
         "ctu-stop-at-pv" => project.ctu_stop_at_pv = flag(key, value)?,
         "openplc4-cd-edge" => project.openplc4_cd_rises = choice(key, value, &["falling", "rising"])? == "rising",
         "s7-ld" => project.s7_ld_edge = choice(key, value, &["level", "edge"])? == "edge",

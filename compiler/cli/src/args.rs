@@ -33,6 +33,8 @@ pub enum Command {
     Test(Test),
     /// Measure the time of a scan
     Bench(Bench),
+    /// Show what a program takes of a machine: bytes of variables, code and stack
+    Report(Report),
     /// Show what changes when a program moves to another system
     Compare(Compare),
     /// Print the long text of a diagnostic, or the list of all
@@ -335,6 +337,21 @@ pub struct Bench {
     /// The back end that runs the program
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Report {
+    #[command(flatten)]
+    pub files: Files,
+    /// The machine to compile for
+    #[arg(long, value_name = "TRIPLE")]
+    pub target: Option<String>,
+    /// The PROGRAM to report on, if the sources have several
+    #[arg(long, value_name = "NAME")]
+    pub program: Option<String>,
+    /// What compiled code is made for; speed without it
+    #[arg(long, value_enum)]
+    pub opt: Option<Opt>,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -3,11 +3,10 @@
 use crate::args::{Build, BuildBackend, Emit, Opt};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart, header, link, linker, output, systemd};
+use crate::{REJECTED, apart, header, link, linker, output, report, systemd, target};
 use staunch_build::listing;
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
-use staunch_native::{Aim, Target};
 use staunch_rust::State;
 use std::path::{Path, PathBuf};
 
@@ -42,7 +41,13 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
             let unit = systemd::unit(&runnable(session, args)?, crate::run::cycle(session, None)?, &out);
             output::write(&out, unit.as_bytes())?;
         }
-        Emit::Obj | Emit::Lib | Emit::Exe => compile(&runnable(session, args)?, args, target, &out)?,
+        Emit::Obj | Emit::Lib | Emit::Exe => {
+            let program = runnable(session, args)?;
+            if hold(session, &program, args, target)? == REJECTED {
+                return Ok(REJECTED);
+            }
+            compile(&program, args, target, &out)?;
+        }
     }
     if out != Path::new("-") {
         session.say("Wrote", out.display());
@@ -53,6 +58,20 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
 fn runnable(session: &Session, args: &Build) -> Result<Program, String> {
     let program = session.program_to_run(args.program.as_deref())?;
     program.ok_or_else(|| "the program was rejected".to_owned())
+}
+
+/// Holds the budgets of the project file.
+fn hold(session: &Session, program: &Program, args: &Build, target: Option<&str>) -> Result<u8, String> {
+    match args.backend {
+        BuildBackend::Native => report::hold(session, program, &target::of(target, args.opt.unwrap_or_default())?),
+        BuildBackend::Rust if report::has_budget(&session.project) => {
+            let file = session.project.file();
+            Err(format!(
+                "{file}: `max-stack` and `max-scan-instructions` are budgets of native code: use `--backend native`"
+            ))
+        }
+        BuildBackend::Rust => Ok(0),
+    }
 }
 
 fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
@@ -69,14 +88,7 @@ fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) ->
 }
 
 fn native(program: &Program, emit: Emit, target: Option<&str>, opt: Opt, out: &Path) -> Result<(), String> {
-    let machine = match target {
-        Some(target) => Target::parse(target),
-        None => Target::host(),
-    };
-    let machine = machine.map_err(|it| it.to_string())?.aiming_at(match opt {
-        Opt::Speed => Aim::Speed,
-        Opt::Size => Aim::Size,
-    });
+    let machine = target::of(target, opt)?;
     let object = staunch_native::object(program, &machine).map_err(|it| it.to_string())?;
     match emit {
         Emit::Lib => link::static_library(&object, target, out),

@@ -10,6 +10,10 @@ mod session;
 mod cache;
 mod toolchain;
 
+mod target;
+
+mod report;
+
 mod archive;
 mod build;
 mod header;
@@ -33,9 +37,8 @@ mod prototype;
 mod scratch;
 mod systemd;
 
-use args::{Cli, Command, Emit, MessageFormat};
+use args::{Cli, Command, Emit};
 use session::Session;
-use std::io::Write as _;
 use std::process::ExitCode;
 
 /// The program was rejected, or a test failed.
@@ -94,24 +97,15 @@ fn report_panic(panic: &std::panic::PanicHookInfo<'_>) {
     output::tell(format_args!("at {}/issues (staunch {}).", env!("CARGO_PKG_REPOSITORY"), env!("CARGO_PKG_VERSION")));
 }
 
-/// Says what went wrong where the format's readers look.
-fn report(format: MessageFormat, message: &str) {
-    match format {
-        MessageFormat::Json => {
-            let object = format!("{{\"reason\":\"error\",\"message\":{}}}\n", staunch_host::json_text(message));
-            // A reader that has gone away wants no more.
-            let _ = std::io::stdout().write_all(object.as_bytes());
-        }
-        MessageFormat::Human | MessageFormat::Short => output::tell(format_args!("error: {message}")),
-    }
-}
-
 fn dispatch(cli: Cli) -> u8 {
     let result = match &cli.command {
         Command::Explain(it) => explain::explain(it),
         Command::Completions(it) => manual::completions(it),
         Command::Man(it) => manual::pages(it),
         Command::Doctor(it) => doctor::doctor(it),
+        Command::Report(it) => {
+            Session::start_to_build(&cli.common, &it.files).and_then(|session| report::report(&session, it))
+        }
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => {
@@ -127,7 +121,7 @@ fn dispatch(cli: Cli) -> u8 {
     match result {
         Ok(code) => code,
         Err(message) => {
-            report(cli.common.format(), &message);
+            output::problem(cli.common.format(), &message);
             USAGE
         }
     }

@@ -1,6 +1,7 @@
 //! Files, standard output, and standard error, whose readers may leave early.
 
-use staunch_host::Replacement;
+use crate::args::MessageFormat;
+use staunch_host::{Replacement, json_text};
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{ErrorKind, Write};
@@ -19,6 +20,18 @@ pub fn print(bytes: &[u8]) -> Result<(), String> {
 /// Writes a line to standard error. If that is closed, nobody reads it.
 pub fn tell(line: impl Display) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
+}
+
+/// Says what went wrong where the format's readers look.
+pub fn problem(format: MessageFormat, message: &str) {
+    match format {
+        MessageFormat::Json => {
+            let object = format!("{{\"reason\":\"error\",\"message\":{}}}\n", json_text(message));
+            // A reader that has gone away wants no more.
+            let _ = std::io::stdout().write_all(object.as_bytes());
+        }
+        MessageFormat::Human | MessageFormat::Short => tell(format_args!("error: {message}")),
+    }
 }
 
 /// Writes a whole file, or standard output for `-`.

@@ -74,6 +74,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         instances: vec![Instance {
             name: "main".to_owned(),
             program: ClassId::next(classes(&routines).len() - 1),
+            task: None,
             interval: None,
             priority: 0,
         }],

@@ -150,6 +150,29 @@ impl Known<'_> {
     }
 }
 
+impl Known<'_> {
+    /// What an integer may be, where something is said of it: all values of a type say nothing, unless they are few.
+    pub(crate) fn said(&self, expr: &Expr) -> Option<Range> {
+        let repr = self.program.repr(expr.ty)?;
+        self.range(expr).filter(|it| repr.size() == 1 || repr.range() != Some(*it))
+    }
+}
+
+impl For {
+    /// How many turns come after the first one at most, if only the loop writes its counter; `None` where nothing says it.
+    pub fn most_further(&self, known: &Known<'_>) -> Option<u64> {
+        let Step::Constant(step) = self.step else { return None };
+        let whole = known.program.repr(self.counter.ty)?;
+        // The loop ends where the counter would leave its subrange.
+        let is_narrow = whole.size() == 1 || whole.range() != Some(self.range);
+        let counter = is_narrow.then_some(self.range);
+        let limits = [&self.first, &self.last].map(|it| known.said(it).or(counter));
+        let [Some(first), Some(last)] = limits else { return None };
+        let way = if step > 0 { last.1 - first.0 } else { first.1 - last.0 };
+        u64::try_from(way.max(0) / step.abs()).ok()
+    }
+}
+
 /// Which of the loops has `place` as its counter.
 pub fn running(loops: &[&For], place: &Place) -> Option<usize> {
     loops.iter().rposition(|it| place.is_same_variable(&it.counter))

@@ -95,6 +95,8 @@ pub struct SourceFile {
 pub struct Instance {
     pub name: String,
     pub program: ClassId,
+    /// The TASK that runs it, where the source has one.
+    pub task: Option<String>,
     /// Nanoseconds between two scans, where the source has a TASK that says so.
     pub interval: Option<i64>,
     /// Lower runs first among instances that are due together.

@@ -69,6 +69,28 @@ pub struct Linear<'a> {
     pub rest: &'a [Statement],
 }
 
+impl Linear<'_> {
+    /// How many turns it has at most, after the statements `before` it; `None` where nothing says it.
+    pub fn most_turns(&self, frame: &Frame<'_>, before: &[Statement], known: &Known<'_>) -> Option<u64> {
+        let (first, bound) = (value_after(frame, before, self.counter)?, known.said(self.bound)?);
+        let way = if self.step > 0 { bound.1 + self.offset - first } else { first - bound.0 - self.offset };
+        if way < 0 { Some(0) } else { u64::try_from(way / self.step.abs() + 1).ok() }
+    }
+}
+
+/// The constant that a variable has after these statements, if the last that may write it assigns one.
+fn value_after(frame: &Frame<'_>, statements: &[Statement], variable: &Place) -> Option<i128> {
+    let writes = |it: &Statement| alias::writes(frame, std::slice::from_ref(it), variable);
+    let at = statements.iter().rposition(writes)?;
+    let StatementKind::Assign { target, value } = &statements[at].kind else { return None };
+    match &value.kind {
+        _ if !target.is_same_variable(variable) => None,
+        // As where a variable is kept in a local while a loop runs.
+        ExprKind::Load(from) => value_after(frame, &statements[..at], from),
+        _ => value.as_const()?.as_integer(),
+    }
+}
+
 /// A WHILE loop whose turns are known, but for an early end.
 pub fn linear<'a>(frame: &Frame<'_>, body: &'a [Statement]) -> Option<Linear<'a>> {
     let (at, stays) = body.iter().enumerate().find_map(|(at, it)| {

@@ -73,12 +73,15 @@ impl<'p> Function<'_, 'p> {
             if taken == all {
                 self.subtract_turns(all);
                 self.ins().jump(head, &[]);
+                self.leads_back(copies);
             }
         }
         self.close_exits(after);
         self.builder.seal_block(head);
 
         self.builder.switch_to_block(few);
+        // There are fewer left than that, and a turn that finds none faults.
+        self.at_most(copies);
         let frame = LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) };
         self.one_by_one(control, frame, few, body, continuing) || is_left
     }

@@ -25,7 +25,8 @@ impl<'p> Function<'_, 'p> {
     /// Statements after which `last` comes in any case.
     pub(crate) fn finally(&mut self, body: &'p Block, last: &'p Block) -> Flow {
         self.endings += 1;
-        let run = &mut |this: &mut Self| this.block(body);
+        let before = self.before;
+        let run = &mut |this: &mut Self| this.block_after(before, body);
         let flow = self.before_faults_pass(run, &mut |this| {
             this.block(last);
         });

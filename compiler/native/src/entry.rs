@@ -49,7 +49,7 @@ fn define(
     emit(module, &mut builder, &values);
     builder.seal_all_blocks();
     builder.finalize(module.output.target_config());
-    module.define(context, id, name)?;
+    module.define_entry(context, id, name)?;
     Ok(id)
 }
 

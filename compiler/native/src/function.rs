@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::address::Address;
+use crate::count::{Marks, Repeats};
 use crate::module::{ModuleEmitter, Workspace};
 use crate::scan::{Begun, start_of_scan};
 use crate::seen::Seen;
@@ -10,7 +11,7 @@ use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
 use staunch_ir::effects::Effects;
-use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, Type};
+use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, Statement, Type};
 use std::collections::{BTreeMap, HashMap};
 
 /// More variables than this make the construction of SSA form slow; the rest live in the frame.
@@ -25,6 +26,12 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) locals: Vec<LocalSlot>,
     /// The innermost loop is the last.
     pub(crate) loops: Vec<LoopFrame>,
+    /// What is known of how often these loops are repeated, each with its copies; the innermost is the last.
+    pub(crate) turning: Vec<Repeats>,
+    /// The instructions that say it.
+    pub(crate) marks: Marks,
+    /// The statements before the one that is being emitted, in its block.
+    pub(crate) before: &'p [Statement],
     /// The turns that the scan has left, while a loop runs that takes some.
     pub(crate) turns: Option<Variable>,
     /// Where the copies of a body that are being emitted leave their loop, after so many turns.
@@ -157,9 +164,9 @@ pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id
     effects.faults |= module.is_scanned(id);
     let mut open = Function::open(module, builder, id, &effects);
     let flow = open.block(&routine.body);
-    open.close(flow, &effects);
+    let marks = open.close(flow, &effects);
     let name = module.program.title(routine);
-    module.define(context, function, &name)
+    module.define_routine(context, function, &name, marks)
 }
 
 impl<'a, 'p> Function<'a, 'p> {
@@ -186,6 +193,9 @@ impl<'a, 'p> Function<'a, 'p> {
             start,
             locals: Vec::with_capacity(routine.locals.len()),
             loops: Vec::new(),
+            turning: Vec::new(),
+            marks: Marks::new(),
+            before: &[],
             turns: None,
             exits: Vec::new(),
             known_in: None,
@@ -285,7 +295,7 @@ impl<'a, 'p> Function<'a, 'p> {
         }
     }
 
-    fn close(mut self, flow: Flow, effects: &Effects) {
+    fn close(mut self, flow: Flow, effects: &Effects) -> Marks {
         if flow == Flow::Continues {
             let exit = self.exit;
             self.ins().jump(exit, &[]);
@@ -302,6 +312,7 @@ impl<'a, 'p> Function<'a, 'p> {
         self.close_faults();
         self.close_temporaries();
         self.builder.finalize(self.module.output.target_config());
+        self.marks
     }
 
     /// Stores a result that flow to memory; gives one that is returned.

@@ -53,7 +53,7 @@ impl Function<'_, '_> {
     }
 
     /// What is known of counters and locals here.
-    pub(crate) fn known(&self, question: &dyn Fn(Known<'_>) -> bool) -> bool {
+    pub(crate) fn known<T>(&self, question: &dyn Fn(Known<'_>) -> T) -> T {
         let checked = |id: LocalId| self.checked[id.index()];
         question(Known { program: self.module.program, loops: &self.counters, checked: &checked })
     }

@@ -11,9 +11,10 @@
 //! becomes a jump to what follows the call. It may not assume that the callee is still called elsewhere: its own function stays,
 //! and a linker drops it.
 
+use crate::count::{Mark, Marks};
 use cranelift_codegen::inline::{Inline, InlineCommand};
 use cranelift_codegen::ir::{
-    ExternalName, FuncRef, Function, GlobalValueData, Inst, Opcode, UserExternalName, UserExternalNameRef, Value,
+    Block, ExternalName, FuncRef, Function, GlobalValueData, Inst, Opcode, UserExternalName, UserExternalNameRef, Value,
 };
 use cranelift_module::FuncId;
 use std::borrow::Cow;
@@ -31,42 +32,72 @@ const PART: usize = 2;
 
 /// The code of the small routines so far.
 #[derive(Default)]
-pub(crate) struct SmallRoutines(HashMap<FuncId, Function>);
+pub(crate) struct SmallRoutines(HashMap<FuncId, Small>);
+
+struct Small {
+    function: Function,
+    /// The marks of the instructions that end these blocks.
+    marks: Vec<(Block, Mark)>,
+}
 
 impl SmallRoutines {
     /// Notes a routine's code before the code generator changes it, if it is small.
-    pub(crate) fn note(&mut self, id: FuncId, function: &Function) {
+    pub(crate) fn note(&mut self, id: FuncId, function: &Function, marks: &Marks) {
         let is_small = function.dfg.num_insts() <= MOST && common(function) <= SMALL;
         if is_small && frame(function) <= MOST_OF_FRAMES && function.global_values.values().all(is_data) {
-            self.0.insert(id, function.clone());
+            let of_end = |it: &(Inst, Mark)| {
+                let block = function.layout.inst_block(it.0)?;
+                (function.layout.last_inst(block) == Some(it.0)).then_some((block, it.1))
+            };
+            let marks = marks.iter().filter_map(of_end).collect();
+            self.0.insert(id, Small { function: function.clone(), marks });
         }
+    }
+
+    /// The marks of the routines whose code is in a function now.
+    pub(crate) fn marks(&self, placed: &[(u32, FuncId)], function: &Function) -> Marks {
+        let mut marks = Marks::new();
+        for (first, id) in placed {
+            for (block, mark) in self.0.get(id).map_or(&[][..], |it| &it.marks) {
+                // The inliner's blocks are the callee's, in their order.
+                let block = Block::from_u32(first + block.as_u32());
+                marks.extend(function.layout.last_inst(block).map(|it| (it, *mark)));
+            }
+        }
+        marks
     }
 
     /// What puts them in place of their calls in a function, which then names what they name.
     pub(crate) fn inliner(&self, caller: &mut Function) -> Inliner<'_> {
         let callees: Vec<_> = caller.dfg.ext_funcs.keys().filter_map(|it| self.0.get(&called(caller, it)?)).collect();
-        for name in callees.into_iter().flat_map(data) {
+        for name in callees.into_iter().flat_map(|it| data(&it.function)) {
             caller.declare_imported_user_function(name.clone());
         }
-        Inliner { small: &self.0, left: GROWTH + caller.dfg.num_insts() / PART, left_of_frames: MOST_OF_FRAMES }
+        let left = GROWTH + caller.dfg.num_insts() / PART;
+        Inliner { small: &self.0, left, left_of_frames: MOST_OF_FRAMES, placed: Vec::new() }
     }
 }
 
 pub(crate) struct Inliner<'a> {
-    small: &'a HashMap<FuncId, Function>,
+    small: &'a HashMap<FuncId, Small>,
     /// By so many instructions the caller may still grow.
     left: usize,
     left_of_frames: u32,
+    /// The routines whose code is in place of a call, each with the number of the block that its first one is now.
+    pub(crate) placed: Vec<(u32, FuncId)>,
 }
 
 impl Inline for Inliner<'_> {
     fn inline(&mut self, caller: &Function, _: Inst, _: Opcode, callee: FuncRef, _: &[Value]) -> InlineCommand<'_> {
-        let found = called(caller, callee).and_then(|id| self.small.get(&id));
+        let id = called(caller, callee);
+        let found = id.and_then(|id| self.small.get(&id)).map(|it| &it.function);
         let rest = found.and_then(|it| self.left.checked_sub(it.dfg.num_insts()));
         let rest_of_frames = found.and_then(|it| self.left_of_frames.checked_sub(frame(it)));
         match (found, rest, rest_of_frames) {
             (Some(function), Some(rest), Some(rest_of_frames)) => {
                 (self.left, self.left_of_frames) = (rest, rest_of_frames);
+                let first = u32::try_from(caller.dfg.num_blocks()).expect("blocks have numbers");
+                self.placed.extend(id.map(|id| (first, id)));
                 InlineCommand::Inline { callee: renamed(function, caller), visit_callee: false }
             }
             _ => InlineCommand::KeepCall,

@@ -1,7 +1,7 @@
 //! Code in memory, for running at once, with the runtime that is linked into this process.
 
 use crate::entry::EntryPoints;
-use crate::program;
+use crate::program::{self, Also};
 use crate::{Error, target};
 use core::ffi::c_int;
 use core::fmt;
@@ -49,7 +49,7 @@ impl Jit {
         let memory = ArenaMemoryProvider::new_with_size(RESERVED).map_err(|error| Error::Output(error.to_string()))?;
         builder.memory_provider(Box::new(memory));
         let mut module = JITModule::new(builder);
-        let entry_points = program::emit(program, &mut module, None)?.entry_points;
+        let entry_points = program::emit(program, &mut module, Also::Nothing)?.entry_points;
         module.finalize_definitions()?;
         Ok(Self::of_module(module, entry_points))
     }

@@ -10,7 +10,9 @@ mod error;
 mod target;
 
 mod address;
+mod count;
 mod inline_routine;
+mod measure;
 mod module;
 mod operands;
 mod signature;
@@ -25,6 +27,7 @@ mod function;
 mod looked_up;
 mod loop_start;
 mod loops;
+mod marked;
 mod object_in_line;
 mod statement;
 mod turns;
@@ -59,9 +62,16 @@ mod program;
 mod jit;
 mod listing;
 mod object;
+mod outside;
 
+mod longest;
+
+pub use count::{Gap, Why};
 pub use error::Error;
 pub use jit::{Init, Jit, Scan};
-pub use listing::{clif, frames};
+pub use listing::{clif, frames, measures};
+pub use longest::{Longest, Unknown};
+pub use measure::{Callee, Measure, Measures};
 pub use object::object;
+pub use outside::stack_outside;
 pub use target::{Aim, Target};

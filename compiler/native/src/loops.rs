@@ -14,8 +14,15 @@ use staunch_ir::{Block, Count, Expr, ExprKind, FaultKind, For, Location, Place, 
 const SMALL: usize = 8;
 
 impl<'p> Function<'_, 'p> {
-    pub(crate) fn turns(&mut self, body: &'p Block, continuing: &'p Block, count: Option<&'p Count>) -> Flow {
+    pub(crate) fn turns(
+        &mut self,
+        body: &'p Block,
+        continuing: &'p Block,
+        count: Option<&'p Count>,
+        at: Location,
+    ) -> Flow {
         let opens = self.open_turns(&[body, continuing]);
+        self.turning.push(self.repeats_of_loop(body, continuing, at));
         let (control, body) = match body.split_first() {
             Some((test, rest)) if let Some(leave) = exit_condition(test).filter(|it| is_small(it)) => {
                 (Control::Unless(leave), rest)
@@ -24,6 +31,7 @@ impl<'p> Function<'_, 'p> {
         };
         let known = count.map_or(Known::Nothing, Known::While);
         let flow = self.loop_under(&control, known, body, continuing);
+        self.turning.pop();
         self.close_turns(opens, flow)
     }
 
@@ -32,6 +40,7 @@ impl<'p> Function<'_, 'p> {
             return flow;
         }
         let opens = self.open_turns(&[&it.body]);
+        self.turning.push(self.repeats_of_for(it, at));
         let running = self.start_for(it, at);
         if let Some(register) = running.register {
             self.counters.push(it);
@@ -45,6 +54,7 @@ impl<'p> Function<'_, 'p> {
             Some(_) if self.endings > 0 => self.before_faults_pass(run, &mut |this| this.set_late(&running)),
             Some(_) | None => run(self),
         };
+        self.turning.pop();
         if running.register.is_some() {
             self.registers.pop();
             self.counters.pop();
@@ -138,6 +148,7 @@ impl<'p> Function<'_, 'p> {
             self.go_on_in(frame.next);
             if self.end_of_turn(control, continuing) == Flow::Continues {
                 self.further_turn(control, turn, frame.after);
+                self.leads_back(1);
             }
         }
         self.builder.seal_block(turn);

@@ -1,7 +1,9 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
+use crate::count::{Marks, Numbered, is_marked, sizes};
 use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
+use crate::measure::{Made, Measures, measures};
 use crate::target::Aim;
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
@@ -20,9 +22,6 @@ use std::fmt::Write;
 /// Functions of more instructions are not optimised: that takes time that grows faster than they do,
 /// to minutes for a hundred thousand statements.
 const LARGE: usize = 30_000;
-
-/// Beside a frame lie the caller's frame pointer and the address to return to.
-const FRAME_ENDS: u64 = 16;
 
 /// The table of objects, and what code is made by that is known of them.
 struct References {
@@ -60,10 +59,14 @@ pub(crate) struct ModuleEmitter<'p> {
     targets: Option<Targets<'p>>,
     expectations: HashMap<Type, Vec<Expectation>>,
     small: SmallRoutines,
-    /// How much of the stack each function takes, in the order in which they are made.
-    pub(crate) frames: Vec<u64>,
+    /// The size of each constant, in the order in which they were asked for.
+    sizes: Vec<(DataId, u64)>,
+    /// The functions, in the order in which they are made.
+    made: Vec<Made>,
     /// The functions as text, where it is wanted.
     pub(crate) listing: Option<String>,
+    /// Whether the instructions of functions are to be counted.
+    pub(crate) counts: bool,
 }
 
 /// Working memory of the code generator, kept from function to function.
@@ -94,8 +97,10 @@ impl<'p> ModuleEmitter<'p> {
             targets: None,
             expectations: HashMap::new(),
             small: SmallRoutines::default(),
-            frames: Vec::with_capacity(program.routines.len()),
+            sizes: Vec::new(),
+            made: Vec::with_capacity(program.routines.len()),
             listing: None,
+            counts: false,
         }
     }
 
@@ -162,8 +167,15 @@ impl<'p> ModuleEmitter<'p> {
         }
         let name = format!("staunch_constant_{}", self.constants.len());
         let id = self.output.declare_data(&name, Linkage::Local, false, false).expect("names of constants are counted");
+        self.sizes.push((id, u64::try_from(bytes.len()).expect("a usize fits a u64")));
         self.constants.insert(bytes, id);
         id
+    }
+
+    /// What is known of the code, when all of it is made.
+    pub(crate) fn measures(&self, entry_points: [FuncId; 2]) -> Measures {
+        let outside = self.imports.iter().map(|(symbol, id)| (*id, symbol.clone())).collect();
+        measures(&self.made, outside, &self.sizes, entry_points)
     }
 
     /// The words of the table by which accesses through references are checked.
@@ -215,25 +227,52 @@ impl<'p> ModuleEmitter<'p> {
         Ok(())
     }
 
-    /// Makes the code of the function in `context`.
-    pub(crate) fn define(&mut self, context: &mut Context, id: FuncId, name: &str) -> Result<(), Error> {
+    /// Makes the code of the routine in `context`, with that of small ones in place of their calls.
+    pub(crate) fn define_routine(
+        &mut self,
+        context: &mut Context,
+        id: FuncId,
+        name: &str,
+        mut marks: Marks,
+    ) -> Result<(), Error> {
+        self.list(context, name);
+        let mut inliner = self.small.inliner(&mut context.func);
+        let inlined = context.inline(&mut inliner);
+        let placed = inliner.placed;
+        inlined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })?;
+        marks.extend(self.small.marks(&placed, &context.func));
+        if self.aim == Aim::Speed {
+            self.small.note(id, &context.func, &marks);
+        }
+        self.define(context, id, name, marks)
+    }
+
+    /// Makes the code of the entry point in `context`. It calls what it runs, so that each function is of a routine.
+    pub(crate) fn define_entry(&mut self, context: &mut Context, id: FuncId, name: &str) -> Result<(), Error> {
+        self.list(context, name);
+        self.define(context, id, name, Marks::new())
+    }
+
+    fn list(&mut self, context: &Context, name: &str) {
         if let Some(listing) = &mut self.listing {
             let text = context.func.display();
             writeln!(listing, "; {name}\n{text}").expect("writing to a String does not fail");
         }
-        let inliner = self.small.inliner(&mut context.func);
-        let inlined = context.inline(inliner);
-        inlined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })?;
-        if self.aim == Aim::Speed {
-            self.small.note(id, &context.func);
+    }
+
+    fn define(&mut self, context: &mut Context, id: FuncId, name: &str, mut marks: Marks) -> Result<(), Error> {
+        let is_marked = self.counts && is_marked(&context.func, &marks);
+        if is_marked {
+            marks.extend(sizes(&context.func));
         }
+        let marks = Numbered::set(&mut context.func, &marks);
         let defined = if context.func.dfg.num_insts() > LARGE {
             self.define_plainly(context, id)
         } else {
             self.output.define_function(id, context).map_err(|error| reason(&error))
         };
-        let frame = context.compiled_code().and_then(|code| code.buffer.frame_layout());
-        self.frames.push(frame.map_or(0, |it| u64::from(it.frame_to_fp_offset) + FRAME_ENDS));
+        let made = Made::of(context, id, name);
+        self.made.push(if self.counts { made.counted(context, is_marked.then_some(&marks)) } else { made });
         self.output.clear_context(context);
         defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
     }

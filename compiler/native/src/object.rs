@@ -1,6 +1,7 @@
 //! Object files, for a linker to join with the runtime and a host.
 
-use crate::{Error, Target, entry, program};
+use crate::program::{self, Also};
+use crate::{Error, Target, entry};
 use cranelift_module::default_libcall_names;
 use cranelift_object::object::SectionKind;
 use cranelift_object::{ObjectBuilder, ObjectModule};
@@ -16,7 +17,7 @@ use staunch_ir::symbols::map_text;
 /// If a function is too large for the code generator.
 pub fn object(program: &Program, target: &Target) -> Result<Vec<u8>, Error> {
     let mut module = module(target)?;
-    program::emit(program, &mut module, None)?;
+    program::emit(program, &mut module, Also::Nothing)?;
     entry::map(&mut module, &map_text(program, &Layout::new(program)))?;
     let mut product = module.finish();
     if target.is_elf() {

@@ -1,6 +1,7 @@
 //! A whole program into a module: its routines, its entry points, and the data that code refers to.
 
 use crate::entry::EntryPoints;
+use crate::measure::Measures;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::target::Aim;
 use crate::{Error, entry, function, inline_block, inline_op, scan};
@@ -10,6 +11,7 @@ use staunch_ir::effects::{Rules, effects};
 use staunch_ir::faults::code_faults;
 use staunch_ir::promote::{Gain, promoted};
 use staunch_ir::{Expr, ExprKind, Program, RoutineId, Statement, StatementKind, Type, visit};
+use target_lexicon::Architecture;
 
 /// What the code for blocks and operations needs.
 const RULES: Rules = Rules {
@@ -30,13 +32,22 @@ pub(crate) struct Emitted {
     pub(crate) entry_points: EntryPoints,
     /// Empty if none was wanted.
     pub(crate) listing: String,
-    /// How much of the stack each routine takes.
-    pub(crate) frames: Vec<u64>,
+    pub(crate) measures: Measures,
 }
 
-/// Puts a whole program into `output`; a listing is added to where one is wanted.
-pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<String>) -> Result<Emitted, Error> {
+/// What else is wanted than the code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Also {
+    Nothing,
+    Listing,
+    /// The blocks of the code, where they can be had for the machine.
+    Counts,
+}
+
+/// Puts a whole program into `output`.
+pub(crate) fn emit(program: &Program, output: &mut dyn Module, also: Also) -> Result<Emitted, Error> {
     let aim = Aim::of(output.isa());
+    let is_of_x86 = matches!(output.isa().triple().architecture, Architecture::X86_64);
     let rules = match aim {
         Aim::Speed => &RULES,
         Aim::Size => &RULES_OF_SIZE,
@@ -48,15 +59,16 @@ pub(crate) fn emit(program: &Program, output: &mut dyn Module, listing: Option<S
     let effects = effects(program, rules);
     let scanned = scan::scanned(program, &effects);
     let mut module = ModuleEmitter::new(program, effects, scanned, output);
-    module.listing = listing;
+    module.listing = (also == Also::Listing).then(String::new);
+    module.counts = also == Also::Counts && is_of_x86;
     module.declare()?;
     for at in 0..program.routines.len() {
         function::emit(&mut module, &mut workspace, RoutineId::next(at))?;
     }
-    let frames = core::mem::take(&mut module.frames);
     let entry_points = entry::emit(&mut module, &mut workspace)?;
+    let measures = module.measures([entry_points.init, entry_points.scan]);
     module.define_constants()?;
-    Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), frames })
+    Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), measures })
 }
 
 /// Whether the code for a statement calls nothing of the runtime's, which would find what is in registers in the frame. What a

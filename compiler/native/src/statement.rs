@@ -9,6 +9,11 @@ use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Typ
 impl<'p> Function<'_, 'p> {
     /// What comes after a statement that control does not pass is left out.
     pub(crate) fn block(&mut self, block: &'p [Statement]) -> Flow {
+        self.block_after(&[], block)
+    }
+
+    /// A block that control comes to only from the statements `before` it.
+    pub(crate) fn block_after(&mut self, before: &'p [Statement], block: &'p [Statement]) -> Flow {
         let mut rest = block;
         while let Some((statement, further)) = rest.split_first() {
             let flow = match self.next_run(rest) {
@@ -18,6 +23,8 @@ impl<'p> Function<'_, 'p> {
                     self.looked_up_once(&run, statements)
                 }
                 None => {
+                    let at = block.len() - rest.len();
+                    self.before = if at == 0 { before } else { &block[..at] };
                     rest = further;
                     self.statement(statement)
                 }
@@ -39,7 +46,9 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Case { selector, arms, otherwise } => {
                 return self.case(selector, arms, otherwise);
             }
-            StatementKind::Loop { body, continuing, count } => return self.turns(body, continuing, count.as_deref()),
+            StatementKind::Loop { body, continuing, count } => {
+                return self.turns(body, continuing, count.as_deref(), statement.at);
+            }
             StatementKind::For(it) => return self.for_loop(it, statement.at),
             StatementKind::Try { body, kind, handler } => return self.attempt(body, kind, handler),
             StatementKind::Finally { body, last } => return self.finally(body, last),

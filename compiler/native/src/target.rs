@@ -107,6 +107,11 @@ impl Target {
         self.triple.to_string()
     }
 
+    /// Whether instructions of its code are counted.
+    pub fn has_counts(&self) -> bool {
+        self.machine == Machine::X86_64
+    }
+
     pub(crate) fn is_elf(&self) -> bool {
         self.triple.binary_format == BinaryFormat::Elf
     }
@@ -165,6 +170,8 @@ fn flags(is_pic: &str, aim: Aim) -> Flags {
         // A frame larger than the guard page touches each page.
         ("enable_probestack", "true"),
         ("probestack_strategy", "inline"),
+        // Where blocks begin, for counting instructions.
+        ("machine_code_cfg_info", "true"),
     ] {
         flags.set(name, value).expect("a setting of Cranelift");
     }

@@ -126,6 +126,7 @@ impl Function<'_, '_> {
         let out = self.pointer(to);
         let arguments = [by_pointer(out), self.by_repr(Repr::U16, before)];
         self.call_runtime(if ty.wide { "staunch_wide_text_clear" } else { "staunch_text_clear" }, &arguments, None);
+        self.works_on(ty.capacity);
         self.ins().jump(done, &[]);
         self.builder.switch_to_block(done);
         self.builder.seal_block(done);

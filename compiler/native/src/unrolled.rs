@@ -111,6 +111,7 @@ impl<'p> Function<'_, 'p> {
             let condition = if it.step > 0 { IntCC::SignedGreaterThan } else { IntCC::SignedLessThan };
             let is_past = self.ins().icmp(condition, end, last);
             self.ins().brif(is_past, after, &[], head, &[]);
+            self.leads_back(it.group);
             is_left = true;
         }
         self.builder.seal_block(head);

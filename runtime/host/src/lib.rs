@@ -65,7 +65,7 @@ pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};
 pub use run::{Moment, Options, Summary, run};
 pub use schedule::DEFAULT_CYCLE;
-pub use start::Event;
+pub use start::{Event, retained};
 pub use value::{format_character, format_time, format_time_as, value_at};
 
 pub use staunch_runtime::Elementary;

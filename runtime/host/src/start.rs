@@ -63,6 +63,11 @@ impl Start {
     }
 }
 
+/// What a power cycle keeps, as ranges of the state.
+pub fn retained(map: &Map) -> Vec<Range<usize>> {
+    Start::of(map).over_power_cycle
+}
+
 /// Neighbours as one.
 fn joined(ranges: impl Iterator<Item = Range<usize>>) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = Vec::new();

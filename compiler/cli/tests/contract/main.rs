@@ -20,6 +20,7 @@ mod page;
 mod power;
 #[cfg(unix)]
 mod realtime;
+mod report;
 mod retain;
 mod run;
 #[cfg(unix)]

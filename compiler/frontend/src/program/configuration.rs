@@ -60,6 +60,7 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
         declarations.program.instances.push(Instance {
             name: declarations.pous[at].ast.name.text.to_owned(),
             program,
+            task: None,
             interval: None,
             priority: LOWEST_PRIORITY,
         });
@@ -111,7 +112,8 @@ impl<'s> Declarations<'s> {
         for at in tests {
             let Some(program) = self.class_of_slot(at) else { continue };
             let name = self.emitted_name(at);
-            self.program.instances.push(Instance { name, program, interval: None, priority: LOWEST_PRIORITY });
+            let (interval, priority) = (None, LOWEST_PRIORITY);
+            self.program.instances.push(Instance { name, program, task: None, interval, priority });
         }
     }
 
@@ -449,6 +451,7 @@ impl<'s> Declarations<'s> {
         self.program.instances.push(Instance {
             name: self.name_of_run(instance),
             program: class,
+            task: instance.task.map(|it| it.text.to_owned()),
             interval: timing.interval,
             priority: timing.priority,
         });

@@ -63,7 +63,7 @@ pub fn routine(kind: RoutineKind, name: &str, state: Option<StructId>) -> Routin
 }
 
 pub fn instance(program: ClassId) -> Instance {
-    Instance { name: format!("i{}", program.0), program, interval: None, priority: 0 }
+    Instance { name: format!("i{}", program.0), program, task: None, interval: None, priority: 0 }
 }
 
 /// The class of a body.

@@ -1,0 +1,27 @@
+//! How many instructions a call of a function takes at most: the machine code as blocks, and the longest way through them.
+//!
+//! ```text
+//! code of a function ─ x86 ─▶ blocks ─ marks, calls ─▶ Counted ─ longest ─▶ instructions
+//! ```
+//!
+//! It reads the bytes that were made, so whatever the code generator did to them is counted. What it cannot know from them is
+//! how often a loop is repeated: a mark on the instruction that leads back says it, where the loop is emitted. A loop
+//! without a mark, and an instruction that is not known, make the count unknown; they are never guessed.
+
+mod blocks;
+mod flow;
+mod graph;
+mod mark;
+mod unmarked;
+mod x86;
+
+mod function;
+mod sizes;
+
+pub use function::Gap;
+pub(crate) use function::{Call, CodeOf, Counted};
+pub(crate) use graph::{Costs, longest};
+pub(crate) use mark::{Mark, Marks, Numbered};
+pub use mark::{Repeats, Why};
+pub(crate) use sizes::sizes;
+pub(crate) use unmarked::is_marked;

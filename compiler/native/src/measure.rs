@@ -1,0 +1,182 @@
+//! What is known of the machine code of each function: how large it is, how much of the stack it takes, and what it calls and
+//! reads. The code generator says it when it has made the function, so it is of the code that runs.
+
+use crate::count::{CodeOf, Counted, Gap, Numbered};
+use cranelift_codegen::Context;
+use cranelift_codegen::ir::Function;
+use cranelift_codegen::{CompiledCode, binemit::CodeOffset};
+use cranelift_module::{DataId, FuncId, ModuleReloc, ModuleRelocTarget, default_libcall_names};
+use std::collections::{BTreeSet, HashMap};
+
+/// Next to a frame are the caller's frame pointer and the address to return to.
+const FRAME_ENDS: u64 = 16;
+
+/// A program's code, function by function.
+#[derive(Clone, Debug)]
+pub struct Measures {
+    /// First one for each routine, in their order; then those that are no routine's.
+    pub functions: Vec<Measure>,
+    /// `staunch_scan`, which may be a routine's.
+    pub scan: usize,
+    pub init: usize,
+    /// The bytes of each read-only constant.
+    pub constants: Vec<u64>,
+}
+
+/// One function.
+#[derive(Clone, Debug)]
+pub struct Measure {
+    /// As in the source, or a symbol.
+    pub name: String,
+    /// Bytes of code.
+    pub text: u64,
+    /// Bytes of the stack that a call takes, without those of the calls it makes.
+    pub frame: u64,
+    pub calls: BTreeSet<Callee>,
+    /// Which constants it reads.
+    pub constants: BTreeSet<usize>,
+    /// Its blocks.
+    pub(crate) counted: Result<Counted<Callee>, Gap>,
+}
+
+/// A function that is called.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Callee {
+    /// One of [`Measures::functions`].
+    Function(usize),
+    /// By its symbol: the runtime's, the C library's, or one that is implemented outside.
+    Outside(String),
+}
+
+/// A function that has just been made.
+pub(crate) struct Made {
+    id: FuncId,
+    name: String,
+    text: CodeOffset,
+    frame: u64,
+    targets: Vec<ModuleRelocTarget>,
+    counted: Result<Counted<ModuleRelocTarget>, Gap>,
+}
+
+impl Made {
+    /// Of the code in `context`.
+    pub(crate) fn of(context: &Context, id: FuncId, name: &str) -> Self {
+        let code = context.compiled_code();
+        let targets = code.map(|it| relocations(it, &context.func, id)).unwrap_or_default();
+        Self {
+            id,
+            name: name.to_owned(),
+            text: code.map_or(0, |it| it.buffer.total_size()),
+            frame: code.map_or(0, frame),
+            targets: targets.into_iter().map(|it| it.1).collect(),
+            counted: Err(Gap::All),
+        }
+    }
+
+    /// The same, with the blocks of the code, which is of x86-64. Without marks of all loops, they are not known.
+    pub(crate) fn counted(self, context: &Context, marks: Option<&Numbered>) -> Self {
+        let counted = match (context.compiled_code(), marks) {
+            (Some(code), Some(marks)) => Counted::of(&code_of(code, &context.func, self.id), marks),
+            (None, _) => Err(Gap::All),
+            (_, None) => Err(Gap::Loop),
+        };
+        Self { counted, ..self }
+    }
+}
+
+fn frame(code: &CompiledCode) -> u64 {
+    code.buffer.frame_layout().map_or(0, |it| u64::from(it.frame_to_fp_offset) + FRAME_ENDS)
+}
+
+/// What the code refers to, and where.
+fn relocations(code: &CompiledCode, function: &Function, id: FuncId) -> Vec<(CodeOffset, ModuleRelocTarget)> {
+    let relocations = code.buffer.relocs().iter().map(|it| ModuleReloc::from_mach_reloc(it, function, id));
+    relocations.map(|it| (it.offset, it.name)).collect()
+}
+
+fn code_of<'a>(code: &'a CompiledCode, function: &Function, id: FuncId) -> CodeOf<'a> {
+    let place = |it: CodeOffset| usize::try_from(it).expect("code is in memory");
+    let is_function = |it: &ModuleRelocTarget| match it {
+        ModuleRelocTarget::User { namespace, .. } => *namespace == FUNCTIONS,
+        ModuleRelocTarget::LibCall(_) | ModuleRelocTarget::KnownSymbol(_) => true,
+        ModuleRelocTarget::FunctionOffset(..) => false,
+    };
+    let mut functions: Vec<_> =
+        relocations(code, function, id).into_iter().map(|(at, target)| (place(at), target)).collect();
+    functions.retain(|it| is_function(&it.1));
+    functions.sort_by_key(|it| it.0);
+    CodeOf {
+        bytes: code.code_buffer(),
+        starts: code.bb_starts.iter().map(|it| place(*it)).collect(),
+        places: code.buffer.get_srclocs_sorted().iter().map(|it| (place(it.start), place(it.end), it.loc)).collect(),
+        functions,
+        frame: frame(code),
+    }
+}
+
+/// What the functions' numbers mean, when all are made.
+pub(crate) struct Names {
+    functions: HashMap<FuncId, usize>,
+    /// The symbols that are not the program's own.
+    outside: HashMap<FuncId, String>,
+    constants: HashMap<DataId, usize>,
+}
+
+impl Names {
+    fn callee(&self, target: &ModuleRelocTarget) -> Option<Callee> {
+        match target {
+            ModuleRelocTarget::User { namespace: FUNCTIONS, index } => {
+                let id = FuncId::from_u32(*index);
+                let own = self.functions.get(&id).copied().map(Callee::Function);
+                own.or_else(|| self.outside.get(&id).cloned().map(Callee::Outside))
+            }
+            ModuleRelocTarget::LibCall(call) => Some(Callee::Outside(default_libcall_names()(*call))),
+            ModuleRelocTarget::KnownSymbol(symbol) => Some(Callee::Outside(symbol.to_string())),
+            ModuleRelocTarget::User { .. } | ModuleRelocTarget::FunctionOffset(..) => None,
+        }
+    }
+
+    fn constant(&self, target: &ModuleRelocTarget) -> Option<usize> {
+        match target {
+            ModuleRelocTarget::User { namespace: DATA, index } => {
+                self.constants.get(&DataId::from_u32(*index)).copied()
+            }
+            ModuleRelocTarget::User { .. }
+            | ModuleRelocTarget::LibCall(_)
+            | ModuleRelocTarget::KnownSymbol(_)
+            | ModuleRelocTarget::FunctionOffset(..) => None,
+        }
+    }
+}
+
+/// How Cranelift's modules tell functions from data.
+const FUNCTIONS: u32 = 0;
+const DATA: u32 = 1;
+
+/// Of all functions, with those that others implement, and the sizes of constants.
+pub(crate) fn measures(
+    made: &[Made],
+    outside: HashMap<FuncId, String>,
+    sizes: &[(DataId, u64)],
+    [init, scan]: [FuncId; 2],
+) -> Measures {
+    let names = Names {
+        functions: made.iter().enumerate().map(|(at, it)| (it.id, at)).collect(),
+        outside,
+        constants: sizes.iter().enumerate().map(|(at, it)| (it.0, at)).collect(),
+    };
+    let measure = |it: &Made| Measure {
+        name: it.name.clone(),
+        text: it.text.into(),
+        frame: it.frame,
+        calls: it.targets.iter().filter_map(|it| names.callee(it)).collect(),
+        constants: it.targets.iter().filter_map(|it| names.constant(it)).collect(),
+        counted: it.counted.as_ref().map_err(|it| *it).and_then(|it| it.renamed(&|it| names.callee(it))),
+    };
+    Measures {
+        functions: made.iter().map(measure).collect(),
+        scan: names.functions[&scan],
+        init: names.functions[&init],
+        constants: sizes.iter().map(|it| it.1).collect(),
+    }
+}
