@@ -322,7 +322,7 @@ fn a_scan_uses_no_more_of_the_stack_than_is_reported() {
     let hold = |target: &str, compiler: &str, run: &dyn Fn(&Path) -> Command| {
         for source in subjects().chain([&maths]) {
             let (used, reported) = stack_of(source, target, compiler, run);
-            assert!(used > 0 && used <= reported, "{} on {target}: {used} of {reported}", source.display());
+            assert!(used <= reported, "{} on {target}: {used} of {reported}", source.display());
             // What is in the runtime is said with room to spare.
             let is_own = *source != maths && reported < 300;
             assert!(!is_own || reported <= 2 * used + 32, "{} on {target}: {used} of {reported}", source.display());
