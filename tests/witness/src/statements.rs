@@ -232,13 +232,9 @@ impl<'a> Machine<'a> {
             Some(by) => match literal_number(by) {
                 Some(number) => number,
                 None => {
-                    // It counts as it is computed, also beyond the counter's type; but not beyond a subrange's base.
+                    // It counts as it is computed, also beyond the counter's type.
                     let step = self.value(frame, by, Some(&Type::Elementary(base)))?;
-                    match step
-                        .ty
-                        .elementary()
-                        .filter(|it| self.promotes(*it) && matches!(place.ty, Type::Elementary(_)))
-                    {
+                    match step.ty.elementary().filter(|it| self.promotes(*it)) {
                         Some(_) => step.as_integer()?,
                         None => self.converted(step, &Type::Elementary(base), by.span)?.as_integer()?,
                     }

@@ -110,10 +110,16 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Compares a value of the counter with the limit, at the limit's type.
-    pub(super) fn is_before_limit(&mut self, op: Op, count: Expr, limit: &Expr, span: Span) -> Option<Expr> {
-        let count = if count.ty == limit.ty { count } else { self.convert(Conversion::Value, limit.ty, count) };
-        self.apply(op, limit.ty, vec![count, limit.clone()], Type::BOOL, span)
+    /// Compares a value of the counter with the limit, as C does: at the type of more bits, of two that have as many at the
+    /// one without a sign.
+    fn is_before_limit(&mut self, op: Op, count: Expr, limit: &Expr, span: Span) -> Option<Expr> {
+        let order = |it: &Expr| it.ty.elementary().map(|it| (it.repr().size(), it.repr().is_unsigned()));
+        let ty = if order(&count) > order(limit) { count.ty } else { limit.ty };
+        let [count, limit] = [count, limit.clone()].map(|it| match it.ty == ty {
+            true => it,
+            false => self.convert(Conversion::Value, ty, it),
+        });
+        self.apply(op, ty, vec![count, limit], Type::BOOL, span)
     }
 
     /// Adds the step to the counter.

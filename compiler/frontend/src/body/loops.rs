@@ -102,10 +102,8 @@ impl<'s> Checker<'_, 's> {
         }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
         let local = head.counter.clone();
-        match self.step_beyond_counter(&head, &calls) {
-            Some(step) => self.loop_by_wide_step(head, step, calls.wide_limit.as_ref(), span)?,
-            None => self.loop_to(head, calls.wide_limit, span)?,
-        }
+        let wide_step = self.step_beyond_counter(&head, &calls).cloned();
+        self.loop_to(head, calls.wide_limit, wide_step.as_ref(), span)?;
         if let Some(shown) = &shown {
             self.show_counter(shown, &local, counter.span);
         }
@@ -254,20 +252,16 @@ impl<'s> Checker<'_, 's> {
         (self.coerce(operand, ty, expr.span), wide)
     }
 
-    /// A FOR to a limit that is computed at more bits than its counter has: the number nearest to it is the limit. Where even
-    /// the least value of the counter is beyond it, the loop has no turn.
-    fn loop_to(&mut self, mut head: For, wide: Option<Expr>, span: Span) -> Option<()> {
-        let at = self.at(span);
+    /// A FOR whose limit or step is computed at more bits than its counter has: the number nearest to the limit is the limit. Where
+    /// even the least value of the counter is beyond it, there is no turn.
+    fn loop_to(&mut self, mut head: For, limit: Option<Expr>, step: Option<&Expr>, span: Span) -> Option<()> {
         let whole = head.last.ty.elementary().and_then(|it| it.repr().range());
-        let Some((wide, (least, most))) = wide.zip(whole) else {
-            self.push(head.statement(at).kind, span);
-            return Some(());
-        };
+        let wide = limit.zip(whole).filter(|(limit, (least, most))| {
+            let known = self.known_range(limit);
+            known.0 < *least || *most < known.1
+        });
+        let Some((wide, (least, most))) = wide else { return self.loop_by(head, step, span) };
         let known = self.known_range(&wide);
-        if least <= known.0 && known.1 <= most {
-            self.push(head.statement(at).kind, span);
-            return Some(());
-        }
         let mut nearest = wide.clone();
         let beyond = [(Op::Max, known.0 < least, least), (Op::Min, known.1 > most, most)];
         for (op, _, end) in beyond.into_iter().filter(|it| it.1) {
@@ -275,19 +269,60 @@ impl<'s> Checker<'_, 's> {
             nearest = self.apply(op, wide.ty, vec![nearest, end], wide.ty, span)?;
         }
         head.last = stored(nearest, head.last.ty.elementary()?);
-        let goes_up = !matches!(head.step, Step::Constant(step) if step < 0);
         let first = self.known_range(&head.first);
-        let may_be_beyond =
-            if goes_up { known.0 < first.0.max(least) && first.0 == least } else { known.1 > most && first.1 == most };
+        let [below, above] = [known.0 < first.0.max(least) && first.0 == least, known.1 > most && first.1 == most];
+        let may_be_beyond = match head.step {
+            Step::Constant(step) if step > 0 => below,
+            Step::Constant(_) => above,
+            Step::Variable(_) => below || above,
+        };
         if !may_be_beyond {
-            self.push(head.statement(at).kind, span);
-            return Some(());
+            return self.loop_by(head, step, span);
         }
-        let op = if goes_up { Op::Le } else { Op::Ge };
-        let condition = self.is_before_limit(op, head.first.clone(), &wide, span)?;
-        let otherwise = vec![Statement::assign(head.counter.clone(), head.first.clone(), at)];
-        self.push(StatementKind::If { condition, then: vec![head.statement(at)], otherwise }, span);
+        let condition = self.may_turn(&head, &wide, step, span)?;
+        let otherwise = vec![Statement::assign(head.counter.clone(), head.first.clone(), self.at(span))];
+        let mut looped = None;
+        let then = self.nested(|this| looped = this.loop_by(head, step, span));
+        looped?;
+        self.push(StatementKind::If { condition, then, otherwise }, span);
         Some(())
+    }
+
+    /// Whether the first value is not beyond the limit; or the step is 0, which is a fault.
+    fn may_turn(&mut self, head: &For, limit: &Expr, wide: Option<&Expr>, span: Span) -> Option<Expr> {
+        let step = match &head.step {
+            Step::Constant(step) => {
+                let op = if *step > 0 { Op::Le } else { Op::Ge };
+                return self.is_before(op, head, limit, span);
+            }
+            Step::Variable(step) => wide.unwrap_or(step).clone(),
+        };
+        let zero = self.coerce(Operand::Integer(0), step.ty, span)?;
+        let mut holds = None;
+        // Above 0 and up to the limit, below 0 and down to it, or 0.
+        for (sign, side) in [(Op::Gt, Some(Op::Le)), (Op::Lt, Some(Op::Ge)), (Op::Eq, None)] {
+            let mut part = self.apply(sign, step.ty, vec![step.clone(), zero.clone()], Type::BOOL, span)?;
+            if let Some(op) = side {
+                let before = self.is_before(op, head, limit, span)?;
+                part = self.apply(Op::And, Type::BOOL, vec![part, before], Type::BOOL, span)?;
+            }
+            holds = Some(match holds {
+                None => part,
+                Some(before) => self.apply(Op::Or, Type::BOOL, vec![before, part], Type::BOOL, span)?,
+            });
+        }
+        holds
+    }
+
+    fn loop_by(&mut self, head: For, step: Option<&Expr>, span: Span) -> Option<()> {
+        match step {
+            Some(step) => self.loop_by_wide_step(head, step, span),
+            None => {
+                let at = self.at(span);
+                self.push(head.statement(at).kind, span);
+                Some(())
+            }
+        }
     }
 
     fn counts(&self, ty: Elementary, span: Span) -> bool {

@@ -312,7 +312,7 @@ impl Pair {
 
     /// Whether the compared values, or how the scan ended, differ.
     pub fn differs(&self, faults: Faults) -> bool {
-        self.faults_differ(faults) || !self.all_equal(&self.compared_bytes)
+        self.faults_differ(faults) || !ends_both(faults) && !self.all_equal(&self.compared_bytes)
     }
 
     /// Whether these do not show the same.
@@ -352,6 +352,11 @@ impl Pair {
         }
         rows
     }
+}
+
+/// Whether both sides fault: what such a scan has computed until then is not output.
+fn ends_both(faults: Faults) -> bool {
+    faults.iter().all(Option::is_some)
 }
 
 fn kinds(faults: Faults) -> [Option<FaultKind>; 2] {

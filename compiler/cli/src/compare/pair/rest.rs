@@ -2,7 +2,7 @@
 
 use super::comparison::Comparison;
 use super::passing::{Passed, Passing};
-use super::{Faults, Matched, Pair, Remaining};
+use super::{Faults, Matched, Pair, Remaining, ends_both};
 
 impl Pair {
     /// Whether anything differs that does not follow from accepted findings seen since the start; and whether
@@ -22,7 +22,7 @@ impl Pair {
             let accepted = (0..2).all(|side| faults[side].is_none() || passing.accepts_fault(side));
             return (!accepted, *is_empty);
         }
-        (!self.all_equal(comparison), *is_empty && passing.is_faultless)
+        (!ends_both(faults) && !self.all_equal(comparison), *is_empty && passing.is_faultless)
     }
 
     /// What is still compared after the accepted findings that have been seen.
