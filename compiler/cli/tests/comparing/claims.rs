@@ -296,9 +296,11 @@ fn what_a_system_does_otherwise_is_not_equal() {
         assert!(code == Some(4) && text.contains(why), "{name}: {text}");
     }
     // A limit that leaves the counter values is none, nor is one PT that every call gives.
-    let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i : INT; t : TON; wait : TIME := T#20ms; u : ARRAY[1..2] OF TON; END_VAR\n";
+    let same = "PROGRAM p\nVAR_INPUT k : USINT; b : BOOL; END_VAR\nVAR_OUTPUT q : DINT; END_VAR\nVAR i, small : INT; t : TON; wait : TIME := T#20ms; u : ARRAY[1..2] OF TON; END_VAR\n";
     let bodies = [
         ("openplc4", "q := 0; FOR i := 0 TO k DO q := q + 1; END_FOR"),
+        ("codesys", "q := 0; small := 2; FOR i := 0 TO small - 1 DO q := q + 1; END_FOR"),
+        ("siemens", "IF k > 3 THEN t(IN := b, PT := T#20ms); END_IF"),
         ("siemens", "IF b THEN t(IN := b, PT := T#20ms); ELSE t(IN := FALSE); END_IF"),
         ("siemens", "t(IN := b, PT := wait); u[1](IN := b, PT := T#1s); u[2](IN := b, PT := T#2s);"),
     ];
@@ -332,4 +334,14 @@ fn an_own_block_with_the_name_of_an_instruction_is_refused_for_logix() {
     let output = run(&format!("{path} --from iec --to logix"));
     let text = text(&output.stderr);
     assert!(output.status.code() == Some(2) && text.contains("the program's own `RES`"), "{text}");
+}
+
+/// A division of Logix, which may report a minor fault, reads no clock: the states come to their end.
+#[test]
+fn a_division_of_logix_ends_the_search() {
+    let source = "PROGRAM p\nVAR_INPUT up : BOOL; END_VAR\nVAR_OUTPUT q : INT; END_VAR\nVAR d : INT; END_VAR\n\
+                  IF up THEN d := 2; ELSE d := 1; END_IF\nq := 60 / d;\nEND_PROGRAM\n";
+    let assumed = OWN.written("no_events_of_division.txt", "no run\nno restart\nno reset\n");
+    let (code, text) = OWN.compare("quotient", source, &["--from", "logix", "--to", "iec", "--assume", &assumed]);
+    assert_eq!(code, Some(0), "{text}");
 }

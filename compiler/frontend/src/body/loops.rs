@@ -226,8 +226,9 @@ impl<'s> Checker<'_, 's> {
             Step::Constant(step) => (*step, *step),
             Step::Variable(step) => self.known_range(step),
         };
-        let furthest = [known.1.saturating_add(steps.1.max(0)), known.0.saturating_add(steps.0.min(0))];
-        if furthest.iter().all(|it| (range.0..=range.1).contains(it)) {
+        let may_pass_most = steps.1 > 0 && known.1.saturating_add(steps.1) > range.1;
+        let may_pass_least = steps.0 < 0 && known.0.saturating_add(steps.0) < range.0;
+        if !may_pass_most && !may_pass_least {
             return;
         }
         let dialect = self.decl.dialect(to.span);

@@ -14,6 +14,8 @@ pub struct Timer {
     start: usize,
     /// Of a timer that remembers whether it runs.
     runs: Option<usize>,
+    /// Of a start longer ago than this, it does not matter when it was: the time of every call is over.
+    longest: Option<i64>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +29,7 @@ enum Kind {
 }
 
 impl Timer {
-    fn of(instance: &Instance) -> Option<Self> {
+    fn of(instance: &Instance, longest: Option<i64>) -> Option<Self> {
         let info = instance.block.info();
         if !info.instructions.iter().any(|it| it.needs_context) {
             return None;
@@ -43,7 +45,7 @@ impl Timer {
         let at = |it: &'static Pin| instance.offset + it.offset;
         let pin = |name: &str| info.pin(name).map(at);
         let (input_before, output, start) = (pin("in_before")?, pin("Q")?, pin("start")?);
-        Some(Self { kind, input_before, output, start, runs: pin("runs") })
+        Some(Self { kind, input_before, output, start, runs: pin("runs"), longest })
     }
 
     /// Whether the next calls measure from `start`, as the blocks are written.
@@ -61,7 +63,10 @@ impl Timer {
     /// Writes how long before `now` the timer started over when it did.
     pub fn settle(self, state: &mut [u8], now: i64) {
         let age = match Value::read(Repr::I64, &state[self.start..]) {
-            Value::I64(start) if self.measures(state) => now.wrapping_sub(start),
+            Value::I64(start) if self.measures(state) => {
+                let age = now.wrapping_sub(start);
+                self.longest.filter(|_| self.kind != Kind::Other).map_or(age, |it| age.min(it))
+            }
             _ => 0,
         };
         Value::I64(age).write(&mut state[self.start..]);
@@ -85,11 +90,14 @@ fn keeps_time(ty: Type) -> bool {
     let Type::Block(id) = ty else { return false };
     let info = id.info();
     let is_settled = SETTLED_BY.iter().all(|it| info.pin(it).is_some());
-    !is_settled && info.instructions.iter().any(|it| it.needs_context)
+    // One without pins gives no time: it reports a minor fault of Logix.
+    !is_settled && !info.pins.is_empty() && info.instructions.iter().any(|it| it.needs_context)
 }
 
-pub fn timers(blocks: &[Instance]) -> Vec<Timer> {
-    blocks.iter().filter_map(Timer::of).collect()
+/// The timers among the blocks. `longest` is the longest PT that any is given, if all are constant.
+pub fn timers(blocks: &[Instance], longest: Option<i128>) -> Vec<Timer> {
+    let longest = longest.and_then(|it| i64::try_from(it).ok());
+    blocks.iter().filter_map(|it| Timer::of(it, longest)).collect()
 }
 
 /// Bytes of a state that are hashed together.

@@ -1,8 +1,8 @@
 //! The program as one system runs it.
 
 use super::normal::{self, Digest, Timer};
-use crate::compare::program::held;
 use crate::compare::program::scalar::{Scalar, Scalars};
+use crate::compare::program::{held, moving_preset};
 use crate::machine::Native;
 use staunch_frontend::Dialect;
 use staunch_host::{Bookmark, Drive, Event, Machine};
@@ -32,7 +32,8 @@ impl Side {
         let (machine, map) = Native::new(&program)?;
         let scalars = Scalars::of(&program);
         let drive = Drive::new(&map, cycle);
-        let (timers, reads_clock) = (normal::timers(&scalars.blocks), normal::reads_clock(&program));
+        let timers = normal::timers(&scalars.blocks, moving_preset::longest(&program));
+        let reads_clock = normal::reads_clock(&program);
         let (start, before) = (drive.bookmark(), machine.state().to_vec());
         Ok(Self {
             dialect,

@@ -27,6 +27,25 @@ struct Given {
 
 /// The first line that moves one. `starts` are the values of variables at the start.
 pub fn line(program: &Program, starts: &HashMap<Name, Range>) -> Option<u32> {
+    let given = given(program, starts);
+    // It is not known which timers those without a name are.
+    let moved = given.iter().flat_map(|(name, all)| {
+        all.iter().enumerate().filter(move |(at, it)| name.is_none() || moves(it, &all[..*at])).map(|it| it.1.line)
+    });
+    moved.min()
+}
+
+/// The longest PT of all timers, if each is given a constant wherever it is called.
+pub fn longest(program: &Program) -> Option<i128> {
+    let given = given(program, &HashMap::new());
+    let constant = |it: &Given| match it.preset {
+        Preset::Constant(number) => Some(number),
+        Preset::Kept | Preset::Varying => None,
+    };
+    given.values().flatten().map(constant).try_fold(0, |longest, it| Some(it?.max(longest)))
+}
+
+fn given(program: &Program, starts: &HashMap<Name, Range>) -> HashMap<Option<Name>, Vec<Given>> {
     let finder = Finder { program, ranges: Ranges::of(program, starts) };
     let mut given: HashMap<Option<Name>, Vec<Given>> = HashMap::new();
     for (number, routine) in program.routines.iter().enumerate() {
@@ -44,11 +63,7 @@ pub fn line(program: &Program, starts: &HashMap<Name, Range>) -> Option<u32> {
             }
         });
     }
-    // It is not known which timers those without a name are.
-    let moved = given.iter().flat_map(|(name, all)| {
-        all.iter().enumerate().filter(move |(at, it)| name.is_none() || moves(it, &all[..*at])).map(|it| it.1.line)
-    });
-    moved.min()
+    given
 }
 
 fn moves(given: &Given, before: &[Given]) -> bool {

@@ -179,9 +179,15 @@ fn an_image_is_one_programs_and_of_this_version() {
     Plant::start(&folder, "plant", &format!("{trace} --io shm:{name}")).ended(0);
     assert_eq!(folder.read("t.csv").lines().nth(1).unwrap().rsplit(',').next(), Some("5"));
     image.write(8, &[2]);
-    has(&Plant::start(&folder, "plant", &format!("--io shm:{name}")).ended(2), &["no process image of this version"]);
+    has(
+        &Plant::start(&folder, "plant", &format!("--io shm:{name}")).ended(2),
+        &["not a process image of this version"],
+    );
     image.1.set_len(100).unwrap();
-    has(&Plant::start(&folder, "plant", &format!("--io shm:{name}")).ended(2), &["no process image of this version"]);
+    has(
+        &Plant::start(&folder, "plant", &format!("--io shm:{name}")).ended(2),
+        &["not a process image of this version"],
+    );
 }
 
 #[test]
