@@ -335,13 +335,3 @@ fn an_own_block_with_the_name_of_an_instruction_is_refused_for_logix() {
     let text = text(&output.stderr);
     assert!(output.status.code() == Some(2) && text.contains("the program's own `RES`"), "{text}");
 }
-
-/// A division of Logix, which may report a minor fault, reads no clock: the states come to their end.
-#[test]
-fn a_division_of_logix_ends_the_search() {
-    let source = "PROGRAM p\nVAR_INPUT up : BOOL; END_VAR\nVAR_OUTPUT q : INT; END_VAR\nVAR d : INT; END_VAR\n\
-                  IF up THEN d := 2; ELSE d := 1; END_IF\nq := 60 / d;\nEND_PROGRAM\n";
-    let assumed = OWN.written("no_events_of_division.txt", "no run\nno restart\nno reset\n");
-    let (code, text) = OWN.compare("quotient", source, &["--from", "logix", "--to", "iec", "--assume", &assumed]);
-    assert_eq!(code, Some(0), "{text}");
-}

@@ -90,8 +90,7 @@ fn keeps_time(ty: Type) -> bool {
     let Type::Block(id) = ty else { return false };
     let info = id.info();
     let is_settled = SETTLED_BY.iter().all(|it| info.pin(it).is_some());
-    // One without pins gives no time: it reports a minor fault of Logix.
-    !is_settled && !info.pins.is_empty() && info.instructions.iter().any(|it| it.needs_context)
+    !is_settled && info.instructions.iter().any(|it| it.needs_context)
 }
 
 /// The timers among the blocks. `longest` is the longest PT that any is given, if all are constant.
@@ -241,9 +240,11 @@ mod tests {
             let has_all = SETTLED_BY.iter().all(|pin| it.pin(pin).is_some());
             has_all && it.instructions.iter().any(|it| it.needs_context)
         };
-        for (number, info) in BLOCKS.iter().enumerate().filter(|(_, it)| timed(it)) {
+        let blocks = || BLOCKS.iter().enumerate().filter(|(_, it)| timed(it));
+        // No preset is more than three steps.
+        for ((number, info), longest) in blocks().flat_map(|it| [(it, None), (it, Some(3 * STEP))]) {
             let (path, key, block) = (String::new(), String::new(), BlockId::next(number));
-            let timer = Timer::of(&Instance { path, key, block, offset: 0, field: None });
+            let timer = Timer::of(&Instance { path, key, block, offset: 0, field: None }, longest);
             let timer = timer.expect("a block that takes the time is a timer");
             assert_ne!(timer.kind, Kind::Other, "{}", info.name);
             let mut numbers = Numbers(u64::try_from(number).unwrap_or(0));
