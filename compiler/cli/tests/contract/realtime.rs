@@ -204,7 +204,7 @@ fn what_is_for_real_time_alone_is_refused_elsewhere() {
         has(&Ran::of(ran).err(2), &["are for a run in real time: add --realtime"]);
     }
     has(&folder.staunch("run main.st --realtime --priority 99").err(2), &["write a number from 1 to 98"]);
-    has(&folder.staunch("run main.st --realtime --overrun stop").err(2), &["skip, catch-up and fault"]);
+    has(&folder.staunch("run main.st --realtime --overrun stop").err(2), &["write skip, catch-up or fault"]);
     has(&folder.staunch("run main.st --realtime --cpu 5000").err(2), &["processor 5000"]);
 }
 
