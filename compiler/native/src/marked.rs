@@ -20,7 +20,7 @@ impl Function<'_, '_> {
         Repeats { most: most.flatten(), why, at }
     }
 
-    /// How often a WHILE or REPEAT is repeated at most, where it begins. What is tested in its body is in one turn more than
+    /// How often a WHILE or REPEAT is repeated at most, where it begins. A test in its body is in one turn more than
     /// the rest.
     pub(crate) fn repeats_of_loop(&self, body: &Block, continuing: &Block, at: Location) -> Repeats {
         let frame = Frame::of(self.module.program, self.routine);

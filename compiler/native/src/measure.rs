@@ -14,7 +14,7 @@ const FRAME_ENDS: u64 = 16;
 /// A program's code, function by function.
 #[derive(Clone, Debug)]
 pub struct Measures {
-    /// First one for each routine, in their order; then those that are no routine's.
+    /// First one for each routine, in their order; then those that do not belong to a routine.
     pub functions: Vec<Measure>,
     /// `staunch_scan`, which may be a routine's.
     pub scan: usize,
@@ -149,7 +149,7 @@ impl Names {
     }
 }
 
-/// How Cranelift's modules tell functions from data.
+/// How Cranelift's modules distinguish functions from data.
 const FUNCTIONS: u32 = 0;
 const DATA: u32 = 1;
 

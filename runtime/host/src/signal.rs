@@ -96,7 +96,7 @@ mod unix {
         for number in [HANG_UP, INTERRUPT, TERMINATE] {
             // SAFETY: the handler only stores to an atomic and makes calls that POSIX allows there.
             let before = unsafe { signal(number, handler as usize) };
-            // `nohup` has asked that the program goes on when the terminal closes.
+            // `nohup` has asked that the program continues when the terminal closes.
             if number == HANG_UP && before == IGNORE {
                 // SAFETY: to ignore a signal calls nothing.
                 unsafe { signal(number, IGNORE) };

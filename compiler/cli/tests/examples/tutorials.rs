@@ -38,7 +38,7 @@ fn tutorials_work_as_they_say() {
                 (Some(file), Some(example)) => {
                     assert!(read(&project().join(example).join(file)).contains(&fence.text), "{place}: not in {file}");
                 }
-                (Some(file), None) => fs::write(folder.join(file), &fence.text).expect("the folder is there"),
+                (Some(file), None) => fs::write(folder.join(file), &fence.text).expect("the folder exists"),
                 (None, _) => {}
             }
         }

@@ -4,7 +4,7 @@
 //! code of a function ─ x86 ─▶ blocks ─ marks, calls ─▶ Counted ─ longest ─▶ instructions
 //! ```
 //!
-//! It reads the bytes that were made, so whatever the code generator did to them is counted. What it cannot know from them is
+//! It reads the bytes that were made, so whatever the code generator did to them is counted. They do not show
 //! how often a loop is repeated: a mark on the instruction that leads back says it, where the loop is emitted. A loop
 //! without a mark, and an instruction that is not known, make the count unknown; they are never guessed.
 
