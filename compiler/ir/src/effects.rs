@@ -324,7 +324,7 @@ impl<'a> Finder<'a> {
             program: self.program,
             root_type: &|root| self.program.root_type(self.routine, root),
             is_within: &is_within,
-            operation: self.rules.operation_faults,
+            operation: &self.rules.operation_faults,
         })
     }
 

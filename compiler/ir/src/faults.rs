@@ -14,7 +14,7 @@ pub struct Faults<'a> {
     /// Whether an index is known to lie within the array's bounds.
     pub is_within: &'a dyn Fn(&Expr, Option<ArrayId>) -> bool,
     /// Whether an operation on these operands can.
-    pub operation: fn(&Program, Op, &[Expr]) -> bool,
+    pub operation: &'a dyn Fn(&Program, Op, &[Expr]) -> bool,
 }
 
 /// Whether evaluating `expr` can fault. An index that is a constant has been checked.
@@ -42,7 +42,7 @@ pub fn projection_faults(program: &Program, projection: &Projection) -> bool {
 }
 
 fn plain(program: &Program) -> Faults<'_> {
-    Faults { program, root_type: &|_| None, is_within: &|index, _| index.as_const().is_some(), operation: op_faults }
+    Faults { program, root_type: &|_| None, is_within: &|index, _| index.as_const().is_some(), operation: &op_faults }
 }
 
 impl Faults<'_> {

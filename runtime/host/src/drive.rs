@@ -58,6 +58,11 @@ impl Drive {
         self.start.kept(a) == self.start.kept(b)
     }
 
+    /// Whether an event keeps the same bytes as in another program.
+    pub fn keeps_as(&self, event: Event, other: &Self) -> bool {
+        self.start.kept(event) == other.start.kept(event)
+    }
+
     /// Whether an event keeps the byte at this offset.
     pub fn keeps(&self, event: Event, offset: usize) -> bool {
         self.start.kept(event).iter().any(|it| it.contains(&offset))

@@ -37,10 +37,8 @@ use search::tolerance::Tolerance;
 use search::world::World;
 use staunch_frontend::Dialect;
 use staunch_ir::Program;
-use staunch_ir::effects::{Rules, effects};
-use staunch_ir::faults::code_faults;
 use variants::Variant;
-use verdict::{Judged, Other, Verdict, WithoutRun, judge};
+use verdict::{Judged, Other, Verdict, WithoutRun, judge, scope};
 
 pub fn compare(common: &Common, args: &Compare) -> Result<u8, String> {
     let args = &args.settled()?;
@@ -149,11 +147,11 @@ fn side_by_side(
 ) -> Result<Compared, String> {
     let args = report.args;
     let cycle = run::cycle(report.session, args.cycle.as_deref())?;
-    let same_program = !may_fault(&program) && is_same(&program, &moved);
     let sides = [Side::new(args.from.dialect, program, cycle)?, Side::new(args.to.dialect, moved, cycle)?];
     let mut pair = Pair::new(sides, &[]);
     pair.is_ported = !report.notes.is_empty();
     let mut world = World::of(&mut pair, args)?;
+    let same_program = pair.runs_the_same();
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
     check_compared(&pair, args, &only)?;
@@ -166,7 +164,7 @@ fn side_by_side(
         Verdict::NotFound { tried, left: world.unfollowed.clone() }
     } else if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
-        Verdict::Equal("both systems run the same program: no statement, type, block or retention differs".to_owned())
+        Verdict::Equal(scope::same_program(&world))
     } else {
         judge::judge(&mut pair, &world, args, &mut findings)?
     };
@@ -185,12 +183,6 @@ fn side_by_side(
     };
     let without_run = judge::without_run(&mut pair, &world, args, &verdict);
     Ok(Compared { pair, world, findings, accepted, verdict, rest, without_run })
-}
-
-/// Whether the program may end with a fault here: what the systems do there is not known to be the same.
-fn may_fault(program: &Program) -> bool {
-    let rules = Rules { operation_faults: code_faults, drops_checks: true, ..Rules::PLAIN };
-    effects(program, &rules).iter().any(|it| it.faults)
 }
 
 /// Everything to compare must exist on both sides: otherwise it would be silently ignored.
@@ -232,11 +224,4 @@ fn rewrite(from: &Session, args: &Compare) -> Result<Option<logix::Rewritten>, S
         return logix::rewrite(&from.sources, args.from.dialect);
     }
     Ok(None)
-}
-
-/// Whether both systems run one program: the statements and types with their blocks, and where each
-/// variable lies and whether it is retained, are the same.
-fn is_same(a: &Program, b: &Program) -> bool {
-    use staunch_ir::{layout::Layout, print, symbols::map_text};
-    print(a) == print(b) && map_text(a, &Layout::new(a)) == map_text(b, &Layout::new(b))
 }

@@ -13,6 +13,7 @@ mod own;
 mod planted;
 mod port;
 mod reports;
+mod same;
 mod settled;
 mod sides;
 mod traps;

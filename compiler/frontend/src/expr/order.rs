@@ -302,7 +302,7 @@ impl Checker<'_, '_> {
             program: &self.decl.program,
             root_type: &|root| self.root_type(root),
             is_within: &|index, array| array.is_none_or(|it| self.is_inside(index, it)),
-            operation: op_faults,
+            operation: &op_faults,
         })
     }
 

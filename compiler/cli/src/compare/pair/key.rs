@@ -3,7 +3,7 @@
 use super::settled::{self, Known, Settled};
 use super::side::Side;
 use super::{Pair, normal};
-use crate::compare::program::ranges::Range;
+use crate::compare::program::flow::Range;
 use crate::compare::program::walked::Name;
 use staunch_host::Machine;
 use std::collections::HashMap;

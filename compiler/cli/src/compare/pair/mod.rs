@@ -13,6 +13,7 @@ mod matching;
 mod parting;
 pub mod passing;
 mod rest;
+mod same;
 
 pub use scan::{Faults, Input, Matched, Row, Step};
 pub use side::Side;

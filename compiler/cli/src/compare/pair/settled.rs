@@ -11,7 +11,7 @@
 use super::scan::{Input, Matched};
 use super::side::Side;
 use crate::compare::program::bounds::{self, Bounds};
-use crate::compare::program::ranges::Range;
+use crate::compare::program::flow::Range;
 use crate::compare::program::scalar::{Instance, Role};
 use crate::compare::program::walked::Name;
 use staunch_ir::Value;

@@ -4,7 +4,7 @@
 //! What is not understood leaves a counter out. A counter is known by its declaration. Where a way leads to one through a
 //! parameter or a reference, or a copy holds one, the declaration is not known: then no counter of that type has bounds.
 
-use super::ranges::{Range, Ranges};
+use super::flow::{Range, Ranges};
 use super::walked::Name;
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{

@@ -7,7 +7,7 @@ pub mod held;
 
 pub mod walked;
 
-pub mod ranges;
+pub mod flow;
 
 pub mod bounds;
 pub mod dependency;

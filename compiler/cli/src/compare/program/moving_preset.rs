@@ -1,6 +1,6 @@
 //! Timers whose PT may change while they run: it varies, or several calls and assignments give several.
 
-use super::ranges::{Range, Ranges};
+use super::flow::{Range, Ranges};
 use super::walked::{Name, Walked};
 use staunch_ir::visit;
 use staunch_ir::{BlockId, Expr, ExprKind, Place, Program, Projection, Routine, RoutineId, StatementKind, Type, Value};

@@ -1,12 +1,12 @@
 //! Where a program uses what its system computes otherwise than it is computed here: the rules that are known and not
 //! followed.
 
+use super::flow::{Range, Ranges};
 use super::moving_preset;
-use super::ranges::Range;
 use super::walked::Name;
 use staunch_frontend::Dialect;
 use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
-use staunch_ir::{Field, Program, Section, Type};
+use staunch_ir::{Expr, ExprKind, Field, Program, Section, StatementKind, TextOp, Type, visit};
 use staunch_runtime::Time;
 use staunch_runtime::time::MILLISECOND;
 use std::collections::HashMap;
@@ -22,6 +22,9 @@ pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<N
         let moving = || is_moving.then(|| moving_preset::line(program, starts)).flatten();
         let of_timers = || timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0);
         let line = used(program, row.uses).or_else(of_timers).or_else(moving)?;
+        if is_harmless(program, row.uses, starts) {
+            return None;
+        }
         let system = dialect.name().to_ascii_uppercase();
         Some(format!(
             "{} of {system}, which Staunch does not follow and line {line} uses: {} ({})",
@@ -31,6 +34,33 @@ pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<N
         ))
     });
     found.collect()
+}
+
+/// Whether no use of it leads to what the system does otherwise.
+fn is_harmless(program: &Program, uses: Use, starts: &HashMap<Name, Range>) -> bool {
+    match uses {
+        Use::Part(Part::LimitOfType) => !Ranges::of(program, starts).reach_limits(),
+        Use::Function("LEN") => lengths_are_stored(program),
+        Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..) | Use::Part(_) => false,
+    }
+}
+
+/// Whether nothing is computed with a length before it is in a variable, so that it does not matter that it has no sign.
+fn lengths_are_stored(program: &Program) -> bool {
+    let is_length = |it: &Expr| matches!(it.kind, ExprKind::ApplyText(TextOp::Len, _));
+    let (mut all, mut stored) = (0, 0);
+    for routine in &program.routines {
+        visit::statements(&routine.body, &mut |statement| {
+            visit::all_exprs(statement, &mut |it| all += usize::from(is_length(it)));
+            let StatementKind::Assign { value, .. } = &statement.kind else { return };
+            let mut value = value;
+            while let ExprKind::Convert(_, inner) = &value.kind {
+                value = inner;
+            }
+            stored += usize::from(is_length(value));
+        });
+    }
+    all == stored
 }
 
 /// A sentence for each value that the system's documents leave open, and that the program may come to.

@@ -51,6 +51,14 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     text
 }
 
+/// Why two programs need no search.
+pub fn same_program(world: &World) -> String {
+    let mut text =
+        "both systems run the same program: no statement, type, block or retention differs in what it does".to_owned();
+    assumed(&mut text, world);
+    text
+}
+
 /// What has its first value throughout.
 fn kept(pair: &Pair) -> Option<String> {
     let names = listed(pair.kept.iter().map(|it| format!("{} ({})", pair.path(it.scalars), pair.shown(it))))?;

@@ -1,0 +1,102 @@
+//! Programs that do the same on both systems are equal, whatever numbers they are given; and those that do it for most numbers
+//! only are not.
+
+use super::programs::Folder;
+
+const OWN: Folder = Folder("same");
+
+/// With inputs `a`, `b` and `k` of 16 bits, `d` of 32, and what is computed of them.
+fn program(body: &str) -> String {
+    format!(
+        "FUNCTION Twice : INT
+VAR_INPUT x : INT; END_VAR
+Twice := x * 2;
+END_FUNCTION
+PROGRAM p
+VAR_INPUT a, b, k : INT; d : DINT; on : BOOL; END_VAR
+VAR_OUTPUT n : INT; m : DINT; hot : BOOL; END_VAR
+VAR t : ARRAY[0..3] OF INT; i, kept : INT; END_VAR
+{body}
+END_PROGRAM
+"
+    )
+}
+
+fn verdict(name: &str, body: &str, (from, to): (&str, &str)) -> (Option<i32>, String) {
+    let quiet = OWN.written("quiet.txt", "no run\nno restart\nno reset\n");
+    OWN.compare(name, &program(body), &["--from", from, "--to", to, "--assume", &quiet, "--budget", "20000"])
+}
+
+/// INTs are computed as such in `iec`, and as DINTs in the others.
+#[test]
+fn what_fits_is_the_same_in_any_type() {
+    let bodies = [
+        "IF a >= 0 AND a <= 27648 THEN n := a / 10; ELSE n := -1; END_IF; hot := n > 100;",
+        "IF k >= 0 AND k <= 3 THEN t[k] := a; END_IF; n := t[1];",
+        "IF NOT (k < 0 OR k > 3) THEN n := t[k]; END_IF;",
+        "IF b <> 0 THEN n := a / b; END_IF;",
+        "IF b > 0 THEN n := a MOD b; END_IF;",
+        "IF a > -16000 AND a < 16000 AND b >= -16000 AND b <= 16000 THEN hot := a + b > 20000; END_IF;",
+        "n := a + b * 3 - 1;",
+        "m := INT_TO_DINT(a) + INT_TO_DINT(b);",
+        "n := LIMIT(0, a, 10) * 3; hot := n > 20;",
+        "n := MIN(MAX(a, -100), 100) * 300 / 7;",
+        "CASE a OF 1..50: n := a * 600 / 3; ELSE n := 0; END_CASE;",
+        "IF on AND kept < 20 THEN kept := kept + 1; END_IF; n := kept * 1000 / 3;",
+        "FOR i := 0 TO 3 DO t[i] := i * 8000; END_FOR; n := t[3];",
+        "kept := a MOD 100; n := kept * 300 / 2;",
+        "n := Twice(a) / 2;",
+    ];
+    for (at, body) in bodies.iter().enumerate() {
+        for systems in [("iec", "openplc"), ("siemens", "iec"), ("openplc4", "siemens"), ("iec", "codesys")] {
+            let (code, text) = verdict(&format!("fits_{at}"), body, systems);
+            assert_eq!(code, Some(0), "{systems:?}: {body}\n{text}");
+        }
+    }
+    for body in [bodies[3], bodies[4], bodies[0]] {
+        let (code, text) = verdict("logix", body, ("logix", "iec"));
+        assert_eq!(code, Some(0), "{body}\n{text}");
+    }
+}
+
+/// A guard that lets one number too many through, or that is over before it is relied on.
+#[test]
+fn what_does_not_fit_is_not_called_the_same() {
+    let bodies = [
+        "IF a > -16000 AND a < 17000 AND b <= 16384 THEN hot := a + b > 20000; END_IF;",
+        "hot := a + b > 20000;",
+        "n := a * 3 / 2;",
+        "CASE a OF 1..60: n := a * 600 / 3; ELSE n := 0; END_CASE;",
+        "IF on AND kept < 40 THEN kept := kept + 1; END_IF; n := kept * 1000 / 3;",
+        "IF a >= 0 AND a <= 100 THEN a := b; n := a * 300 / 2; END_IF;",
+        "kept := a MOD 100; IF on THEN kept := b; END_IF; n := kept * 300 / 2;",
+        "kept := a MOD 100; FOR i := 0 TO 3 DO n := kept * 300 / 2; kept := b; END_FOR;",
+        "IF a < 100 OR b > 5 THEN hot := a * 300 > 0; END_IF;",
+        "i := 1; FOR i := 100 TO i + 20 DO n := i * 300 / 3; END_FOR; FOR i := 300 TO 310 DO n := i * 300 / 3; END_FOR;",
+    ];
+    for (at, body) in bodies.iter().enumerate() {
+        for systems in [("iec", "openplc"), ("iec", "codesys")] {
+            let (code, text) = verdict(&format!("passes_{at}"), body, systems);
+            assert_ne!(code, Some(0), "{systems:?}: {body}\n{text}");
+        }
+    }
+}
+
+/// What both systems do after a fault is not known to be the same.
+#[test]
+fn what_may_fault_is_not_called_the_same() {
+    for (at, body) in [
+        "IF k >= 0 AND k <= 4 THEN t[k] := a; END_IF;",
+        "IF b >= 0 THEN n := a / b; END_IF;",
+        "IF k >= 0 AND k <= 3 THEN k := k + 1; t[k] := a; END_IF;",
+        "IF b <> 0 THEN b := b - 1; n := a / b; END_IF;",
+        "IF k = 0 THEN t[k] := 1; ELSE t[k] := 2; END_IF;",
+        "b := 1; FOR b := 0 TO 5 / b DO n := 1; END_FOR;",
+    ]
+    .iter()
+    .enumerate()
+    {
+        let (code, text) = verdict(&format!("faults_{at}"), body, ("iec", "openplc"));
+        assert!(code != Some(0) || !text.contains("run the same program"), "{body}\n{text}");
+    }
+}
