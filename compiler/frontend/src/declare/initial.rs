@@ -5,7 +5,7 @@ use crate::ast::{self, InitialKind};
 use crate::expr::constant::constant;
 use crate::expr::unresolved::not_constant;
 use crate::lex::index;
-use crate::names::functions;
+use crate::names::{Entry, Found, Meaning, Sense, functions};
 use crate::spelling::{Key, nearest};
 use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
@@ -147,7 +147,9 @@ impl<'s> Declarations<'s> {
         scope: &Rc<Scope<'s>>,
         runs: &mut Runs,
     ) -> Option<()> {
-        if let Some((count, values)) = named_repeat(element) {
+        if let Some((count, values)) = named_repeat(element)
+            && !self.is_function(count)
+        {
             let times = self.repeat_count(count, scope)?;
             let mut given = Vec::new();
             for value in values {
@@ -165,6 +167,12 @@ impl<'s> Declarations<'s> {
         }
         let span = element.values.first().map_or_else(Span::default, |it| it.span);
         self.push_repeated(count, values, span, leaf, runs)
+    }
+
+    /// Whether a name before `(` is that of a FUNCTION, so that this is a call and no repeat.
+    fn is_function(&self, callee: &ast::Expr<'s>) -> bool {
+        let ast::ExprKind::Name(name) = callee.kind else { return false };
+        matches!(self.lookup(&[name], Sense::Function), Found::One(Meaning::Declared(Entry::Pou(_))))
     }
 
     fn repeat_count(&mut self, expr: &ast::Expr<'s>, scope: &Rc<Scope<'s>>) -> Option<u64> {

@@ -44,7 +44,7 @@ impl<'s> Checker<'_, 's> {
             Callee::Standard(name) => self.standard_function(name, arguments, expected, expr.span),
             other => {
                 if self.signature.is_none() {
-                    self.report(super::unresolved::not_constant(expr.span));
+                    self.report(self.not_constant_here(expr.span));
                     return None;
                 }
                 let value = self.call(other, callee, arguments, expected, expr.span)?;
@@ -166,7 +166,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Option<staunch_ir::Expr>> {
         if self.signature.is_none() {
-            self.report(super::unresolved::not_constant(span));
+            self.report(self.not_constant_here(span));
             return None;
         }
         let initial = |this: &mut Self, ty| match what {

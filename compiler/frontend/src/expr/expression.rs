@@ -185,7 +185,7 @@ impl<'s> Checker<'_, 's> {
     fn load(&mut self, expr: &ast::Expr<'s>) -> Option<Expr> {
         let found = self.place_or_view(expr)?;
         if self.signature.is_none() {
-            self.report(super::unresolved::not_constant(expr.span));
+            self.report(self.not_constant_here(expr.span));
             return None;
         }
         self.read(found.place, found.view, expr.span)

@@ -1,6 +1,6 @@
 //! Operations and conversions, as their values where all operands are constant.
 
-use super::checker::Checker;
+use super::checker::{Checker, Context};
 use crate::{Code, Diagnostic, Span};
 use staunch_ir::{Const, Conversion, Expr, ExprKind, Op, Repr, Type, Value};
 
@@ -35,10 +35,12 @@ impl Checker<'_, '_> {
             Some(Ok(value)) => Some(constant(expr, value)),
             Some(Err(_)) if self.may_not_run => Some(expr),
             Some(Err(fault)) => {
-                self.report(
-                    Diagnostic::new(Code::E0207, span, format!("{} in a constant expression", fault.kind))
-                        .label("this would fault in every scan"),
-                );
+                let label = match self.context {
+                    Context::Initial => "this would fault as the program starts",
+                    Context::Body | Context::Constant => "this would fault in every scan",
+                };
+                let error = Diagnostic::new(Code::E0207, span, format!("{} in a constant expression", fault.kind));
+                self.report(error.label(label));
                 None
             }
             None => Some(expr),

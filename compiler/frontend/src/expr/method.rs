@@ -235,7 +235,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Option<Expr>> {
         if self.signature.is_none() {
-            self.report(super::unresolved::not_constant(span));
+            self.report(self.not_constant_here(span));
             return None;
         }
         self.may_call(slot, name)?;

@@ -14,6 +14,17 @@ pub(crate) fn not_constant(span: Span) -> Diagnostic {
         .label("its value is not known before the program runs")
 }
 
+impl Checker<'_, '_> {
+    /// A call or a part of something that is known only as the program runs.
+    pub(super) fn not_constant_here(&self, span: Span) -> Diagnostic {
+        let error = not_constant(span);
+        match self.context {
+            Context::Initial => error.help("assign it at the start of a body, to a variable that is not CONSTANT"),
+            Context::Body | Context::Constant => error,
+        }
+    }
+}
+
 /// `CSCAPE.CTUD`: the family has no such block.
 pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
     let own = BLOCKS.iter().filter(|it| it.family == family && it.facts.option.is_none());
