@@ -87,6 +87,18 @@ fn an_executable_runs_until_it_is_stopped() {
     assert_eq!(ran.code, 0);
 }
 
+/// A command that interrupts end, also where the tests run in the background of a shell, which ignores them.
+#[cfg(unix)]
+fn heeding_interrupts(command: &Command) -> Command {
+    let mut heeding = Command::new("env");
+    heeding.arg("--default-signal=INT").arg(command.get_program()).args(command.get_args());
+    heeding.envs(command.get_envs().filter_map(|it| Some((it.0, it.1?))));
+    if let Some(folder) = command.get_current_dir() {
+        heeding.current_dir(folder);
+    }
+    heeding
+}
+
 /// A scan that would take hours: Ctrl-C still ends it.
 #[test]
 #[cfg(unix)]
@@ -112,7 +124,8 @@ fn an_interrupt_ends_a_scan_that_does_not_end() {
         ("native, virtual", run("")),
         ("interpret, virtual", run("--backend interpret")),
     ];
-    for (name, mut command) in commands {
+    for (name, command) in commands {
+        let mut command = heeding_interrupts(&command);
         let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(700));
         assert!(child.try_wait().unwrap().is_none(), "{name} ended too early");
