@@ -164,7 +164,7 @@ fn side_by_side(
         Verdict::NotFound { tried, left: world.unfollowed.clone() }
     } else if same_program && args.stimulus.is_none() {
         findings.all_impossible("both systems run the same program");
-        Verdict::Equal(scope::same_program(&world))
+        Verdict::Equal(scope::same_program(&pair, &world))
     } else {
         judge::judge(&mut pair, &world, args, &mut findings)?
     };

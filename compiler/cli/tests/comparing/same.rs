@@ -100,3 +100,63 @@ fn what_may_fault_is_not_called_the_same() {
         assert!(code != Some(0) || !text.contains("run the same program"), "{body}\n{text}");
     }
 }
+
+/// Programs that are text for text the same, and whose systems differ in what the text does not show.
+#[test]
+fn what_is_in_a_call_counts_too() {
+    let texts = [
+        // A structure in a call starts with other values than the one of the program.
+        (
+            "member",
+            "TYPE S : STRUCT x : INT := 5; END_STRUCT END_TYPE
+PROGRAM p VAR q : INT; m : S; END_VAR VAR_TEMP t : S := (x := 0); END_VAR q := 10 / t.x + m.x; END_PROGRAM",
+        ),
+        (
+            "guarded",
+            "TYPE S : STRUCT x : INT := 5; END_STRUCT END_TYPE
+FUNCTION f : INT
+VAR_INPUT a : INT; END_VAR VAR t : S := (x := 1000); END_VAR
+IF a > 100 OR a < -100 THEN f := 0; RETURN; END_IF;
+f := a * t.x / 7;
+END_FUNCTION
+PROGRAM p VAR_INPUT a : INT; END_VAR VAR q : INT; m : S; END_VAR q := f(a) + m.x; END_PROGRAM",
+        ),
+        // The result is cut at 126 characters on OPENPLC.
+        (
+            "capacity",
+            "PROGRAM p VAR_INPUT a, b : STRING[200]; END_VAR VAR_OUTPUT n : INT; END_VAR n := LEN(CONCAT(a, b)); END_PROGRAM",
+        ),
+        // OPENPLC's CTU stops at PV.
+        (
+            "block",
+            "PROGRAM p VAR_OUTPUT q : INT; END_VAR VAR_TEMP c : CTU; END_VAR
+c(CU := TRUE, PV := 1); c(CU := FALSE, PV := 1); c(CU := TRUE, PV := 1); q := c.CV; END_PROGRAM",
+        ),
+        (
+            "block_of_a_function",
+            "FUNCTION f : INT VAR c : CTU; END_VAR
+c(CU := TRUE, PV := 1); c(CU := FALSE, PV := 1); c(CU := TRUE, PV := 1); f := c.CV; END_FUNCTION
+PROGRAM p VAR_OUTPUT q : INT; END_VAR q := f(); END_PROGRAM",
+        ),
+    ];
+    for (name, text) in texts {
+        let (code, text) = OWN.compare(name, text, &["--from", "iec", "--to", "openplc", "--budget", "20000"]);
+        assert_ne!(code, Some(0), "{name}: {text}");
+    }
+}
+
+/// What the verdict rests on is said with it.
+#[test]
+fn what_is_assumed_is_said() {
+    let global = "VAR_GLOBAL d : INT := 5; END_VAR
+PROGRAM p VAR_EXTERNAL d : INT; END_VAR VAR_INPUT a : INT; END_VAR VAR_OUTPUT q : INT; END_VAR q := a / d; END_PROGRAM";
+    let narrow = "PROGRAM p VAR_INPUT a : INT(1..10); END_VAR VAR_OUTPUT q : INT; END_VAR q := 10 / a; END_PROGRAM";
+    for (name, text, said) in [
+        ("global", global, "nothing else is written from outside"),
+        ("global", global, "nothing writes d (5), so only the initial value was tried"),
+        ("narrow", narrow, "inputs have values of their subranges"),
+    ] {
+        let (code, text) = OWN.compare(name, text, &["--from", "iec", "--to", "openplc"]);
+        assert!(code == Some(0) && text.contains("run the same program") && text.contains(said), "{name}: {text}");
+    }
+}

@@ -15,21 +15,27 @@ impl Pair {
     pub fn runs_the_same(&self) -> bool {
         let [a, b] = &self.sides;
         let events = self.events();
-        let text = |side: usize| {
+        let plain = |side: usize| {
             let plain = Ranges::of(&self.sides[side].program, &self.starts(side)).plain()?;
-            Some(print(&plain) + &map(&plain))
+            Some(text(&plain))
         };
-        events.into_iter().all(|it| a.drive.keeps_as(it, &b.drive)) && text(0).is_some_and(|it| text(1) == Some(it))
+        events.into_iter().all(|it| a.drive.keeps_as(it, &b.drive)) && plain(0).is_some_and(|it| plain(1) == Some(it))
     }
 }
 
-/// Where its variables are, and when it runs.
-fn map(program: &Program) -> String {
-    let text = map_text(program, &Layout::new(program));
+/// The program, where its variables are, and when it runs.
+fn text(program: &Program) -> String {
+    let (mut text, map) = (print(program), map_text(program, &Layout::new(program)));
+    // The map has no variables of a call. A block of another vendor may have the same name, and has another number.
+    for routine in &program.routines {
+        let types = routine.locals.iter().map(|it| it.ty).chain(routine.params.iter().map(|it| it.ty));
+        types.for_each(|it| text += &format!("{it:?}\n"));
+    }
     // The times that a system has matter where a variable is one.
-    let has_times = text.lines().any(|it| it.contains("TIME"));
-    let lines = text.lines().filter(|it| has_times || !it.starts_with("times\t"));
-    lines.map(without_retention).collect()
+    let has_times = text.contains("TIME") || map.contains("TIME");
+    let lines = map.lines().filter(|it| has_times || !it.starts_with("times\t"));
+    lines.for_each(|it| text += &without_retention(it));
+    text
 }
 
 fn without_retention(line: &str) -> String {

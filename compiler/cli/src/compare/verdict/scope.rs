@@ -4,7 +4,7 @@ use super::Verdict;
 use crate::compare::difference::pitfall;
 use crate::compare::inputs::alphabet;
 use crate::compare::inputs::choice::Covered;
-use crate::compare::pair::Pair;
+use crate::compare::pair::{Input, Pair};
 use crate::compare::program::scalar::Instance;
 use crate::compare::search::progress::Outcome;
 use crate::compare::search::world::World;
@@ -41,9 +41,7 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     if let Some(events) = events(pair) {
         let _ = write!(text, ", with {events} at every point");
     }
-    if pair.sides.iter().any(|it| !it.program.structure(it.program.globals).fields.is_empty()) {
-        text.push_str("; it is assumed that nothing else is written from outside");
-    }
+    from_outside(&mut text, pair);
     assumed(&mut text, world);
     for limit in [kept(pair), of_one(pair)].into_iter().flatten() {
         let _ = write!(text, "; {limit}");
@@ -52,11 +50,29 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
 }
 
 /// Why two programs need no search.
-pub fn same_program(world: &World) -> String {
+pub fn same_program(pair: &Pair, world: &World) -> String {
     let mut text =
         "both systems run the same program: no statement, type, block or retention differs in what it does".to_owned();
+    let has_subrange = |it: &Input| (0..2).any(|side| range_of(pair, side, it).is_some());
+    if pair.inputs.iter().any(has_subrange) {
+        text.push_str("; inputs have values of their subranges");
+    }
+    from_outside(&mut text, pair);
     assumed(&mut text, world);
+    if let Some(kept) = kept(pair) {
+        let _ = write!(text, "; {kept}");
+    }
     text
+}
+
+fn range_of(pair: &Pair, side: usize, input: &Input) -> Option<(i128, i128)> {
+    pair.sides[side].program.range(pair.scalar(side, input.scalars[side]).ty)
+}
+
+fn from_outside(text: &mut String, pair: &Pair) {
+    if pair.sides.iter().any(|it| !it.program.structure(it.program.globals).fields.is_empty()) {
+        text.push_str("; it is assumed that nothing else is written from outside");
+    }
 }
 
 /// What has its first value throughout.

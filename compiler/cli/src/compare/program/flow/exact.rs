@@ -42,7 +42,11 @@ impl Here<'_, '_, '_> {
                 None => ExprKind::Apply(*op, self.numbers(operands)),
             },
             ExprKind::Apply(op, operands) => ExprKind::Apply(*op, self.each(operands)),
-            ExprKind::ApplyText(op, operands) => ExprKind::ApplyText(*op, self.each(operands)),
+            ExprKind::ApplyText(op, operands) => {
+                let text = Expr { ty: expr.ty, kind: ExprKind::ApplyText(*op, self.each(operands)), at: expr.at };
+                // It is cut at the capacity of its type, which is printed so.
+                ExprKind::Convert(Conversion::Value, Box::new(text))
+            }
             ExprKind::Convert(Conversion::Value, inner) => {
                 let inner = self.exact(inner).unwrap_or_else(|| self.plain(inner));
                 ExprKind::Convert(Conversion::Value, Box::new(inner))
@@ -100,7 +104,7 @@ impl Here<'_, '_, '_> {
         }
     }
 
-    /// A LINT of the same number; `None` where it is no whole number, or none that a LINT holds.
+    /// A LINT of the same number; `None` where it is not a whole number that a LINT holds.
     fn exact(&self, expr: &Expr) -> Option<Expr> {
         let may_be = self.known.of(expr).filter(|it| it.lies_in(LINT))?;
         if let Some(number) = may_be.number() {

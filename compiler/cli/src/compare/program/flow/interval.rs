@@ -93,7 +93,7 @@ fn quotient(a: Range, b: Interval) -> Option<Range> {
     found.reduce(|a, b| a.zip(b).map(|(a, b)| (a.0.min(b.0), a.1.max(b.1))))?
 }
 
-/// A remainder has the dividend's sign, is no further from 0 than that, and smaller than the divisor.
+/// A remainder has the dividend's sign, is at most as far from 0, and smaller than the divisor.
 fn remainder(a: Range, b: Interval) -> Option<Range> {
     if !b.is_not_zero {
         return None;

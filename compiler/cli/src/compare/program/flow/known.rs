@@ -13,8 +13,8 @@ pub struct Key {
 }
 
 impl Key {
-    /// What nothing else leads to but places with the same root: the variables of a routine and of its instance, and globals
-    /// that are no part of something.
+    /// Of what only places with the same root lead to: the variables of a routine and of its instance, and globals that stand
+    /// alone.
     pub fn of(place: &Place) -> Option<Self> {
         let field = |it: &Projection| match it {
             Projection::Field(id) => Some(*id),
@@ -137,7 +137,7 @@ impl<'n, 'p> Known<'n, 'p> {
     /// A place, and with it all that it is a part of, may have been written.
     pub fn forget(&mut self, place: &Place) {
         let is_reached = place.is_followed() || matches!(place.root, Root::Param(_));
-        let is_far = place.root == Root::Globals && place.projections.len() > 1;
+        let is_far = is_far(place);
         match (is_reached, is_far) {
             (true, _) => self.found.clear(),
             // It may be a part of the instance.
@@ -240,6 +240,12 @@ impl<'n, 'p> Known<'n, 'p> {
         }
         Some(known)
     }
+}
+
+/// Whether a place is a part of a global, or has parts: it may be the instance whose statements these are, or a part of it.
+pub fn is_far(place: &Place) -> bool {
+    let has_parts = matches!(place.ty, Type::Struct(_) | Type::Array(_));
+    place.root == Root::Globals && (has_parts || place.projections.len() > 1)
 }
 
 /// The comparison that holds where one does, or does not.

@@ -2,14 +2,14 @@
 
 use super::exact::{Here, Values, is_small};
 use super::interval::Interval;
-use super::known::Known;
+use super::known::{Known, is_far};
 use super::names::{Names, Written};
 use crate::compare::program::walked::Walked;
 use staunch_ir::faults::{Faults, code_faults};
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
     Argument, Arm, ArrayId, Block, Const, Expr, For, LocalId, Mode, Op, Place, Program, Root, Routine, RoutineId,
-    Statement, StatementKind, Step,
+    Statement, StatementKind, Step, Type,
 };
 use std::rc::Rc;
 
@@ -33,6 +33,10 @@ pub fn routine(names: &Names<'_>, id: RoutineId, written: &mut Written) -> Plain
             Const::Zero => names.whole(local.ty).map(|_| 0),
             Const::Text(_) | Const::Array(_) | Const::Struct(_) => None,
         };
+        // Members of the same structure elsewhere have one name with these, and start with other values.
+        if matches!(local.ty, Type::Struct(_) | Type::Array(_)) {
+            written.opens(names.program, &[], local.ty);
+        }
         if !is_given(local_id) {
             known.give(&Place::local(local_id, local.ty), number.map(Interval::only));
         }
@@ -66,11 +70,13 @@ impl<'n, 'p> Way<'n, 'p> {
     }
 
     fn forget_values(&mut self, place: &Place) {
-        let is_reached = place.is_followed() || matches!(place.root, Root::Param(_));
+        if place.is_followed() || matches!(place.root, Root::Param(_)) {
+            self.values.clear();
+        }
         let depends = |it: &Expr| {
             let mut found = false;
             visit::reads(it, &mut |read| {
-                found |= is_reached || read.is_followed() || matches!(read.root, Root::Param(_)) || meets(read, place);
+                found |= read.is_followed() || matches!(read.root, Root::Param(_)) || meets(read, place);
             });
             found
         };
@@ -110,10 +116,9 @@ fn either<'n, 'p>(a: Option<Way<'n, 'p>>, b: Option<Way<'n, 'p>>) -> Option<Way<
     }
 }
 
-/// Whether two places may share storage: members of one variable are told apart by their names alone.
+/// Whether two places may share storage. Members of one variable are distinguished by their names alone.
 fn meets(a: &Place, b: &Place) -> bool {
     use staunch_ir::Projection::{Deref, Field, Index};
-    let is_far = |it: &Place| it.root == Root::Globals && it.projections.len() > 1;
     if a.root != b.root {
         // A part of a global may be the instance, or a part of it.
         return is_far(a) && b.root == Root::Instance || is_far(b) && a.root == Root::Instance;
@@ -313,7 +318,7 @@ impl<'p> Walk<'_, 'p> {
             let up = steps.1 > 0 && end.range.1 + steps.1 > it.range.1;
             up || steps.0 < 0 && end.range.0 + steps.0 < it.range.0
         });
-        self.reaches_limit |= reaches.unwrap_or(true);
+        self.reaches_limit |= !it.is_private || reaches.unwrap_or(true);
         let turns = start.zip(end).and_then(|(start, end)| match it.step {
             Step::Constant(step) if step > 0 => Interval::new(it.range).and((start.range.0, end.range.1)),
             Step::Constant(_) => Interval::new(it.range).and((end.range.0, start.range.1)),
