@@ -24,6 +24,7 @@ mod uses;
 mod chars;
 mod expression;
 mod external;
+pub mod interval;
 mod limits;
 mod op;
 mod place;

@@ -1,19 +1,14 @@
 //! What an expression may be, whatever its variables are.
 
-use crate::{Conversion, Expr, ExprKind, Op, TextOp, Type};
-
-/// Inclusive.
-pub type Range = (i128, i128);
+use crate::interval::{Range, of_operands};
+use crate::{Conversion, Expr, ExprKind, TextOp, Type};
 
 /// What constants and the capacities of strings say of an integer expression; `None` where they say nothing.
 pub(crate) fn limits(expr: &Expr) -> Option<Range> {
     let known = match &expr.kind {
         ExprKind::Const(value) => value.as_integer().map(|it| (it, it)),
         ExprKind::Convert(Conversion::Value | Conversion::Same, operand) => limits(operand),
-        ExprKind::Apply(op, operands) => match operands.as_slice() {
-            [a, b] => combined(*op, limits(a)?, limits(b)?),
-            _ => None,
-        },
+        ExprKind::Apply(op, operands) => of_operands(*op, operands, limits),
         ExprKind::ApplyText(op, operands) => length(*op, operands),
         ExprKind::Load(_)
         | ExprKind::Convert(Conversion::Truncate | Conversion::Bits, _)
@@ -36,26 +31,6 @@ pub(crate) fn length(op: TextOp, operands: &[Expr]) -> Option<Range> {
         }
         _ => None,
     }
-}
-
-pub(crate) fn combined(op: Op, a: Range, b: Range) -> Option<Range> {
-    match op {
-        Op::Add => Some((a.0 + b.0, a.1 + b.1)),
-        Op::Sub => Some((a.0 - b.1, a.1 - b.0)),
-        Op::Mul => product(a, b),
-        // A remainder has the dividend's sign, and is smaller than the divisor.
-        Op::Mod if b.0 == b.1 && b.0 > 0 => {
-            let most = b.0 - 1;
-            Some((if a.0 >= 0 { 0 } else { -most }, if a.1 <= 0 { 0 } else { most }))
-        }
-        Op::And if b.0 == b.1 && b.0 >= 0 => Some((0, b.0)),
-        _ => None,
-    }
-}
-
-fn product(a: Range, b: Range) -> Option<Range> {
-    let corners = [a.0.checked_mul(b.0)?, a.0.checked_mul(b.1)?, a.1.checked_mul(b.0)?, a.1.checked_mul(b.1)?];
-    Some((*corners.iter().min()?, *corners.iter().max()?))
 }
 
 #[cfg(test)]

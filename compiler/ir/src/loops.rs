@@ -3,7 +3,8 @@
 //! index whose range follows from the loop's bounds, or from a check before, needs no check.
 
 use crate::alias::{self, Frame};
-use crate::limits::{Range, combined, length};
+use crate::interval::{Range, of_operands};
+use crate::limits::length;
 use crate::visit;
 use crate::{
     ArrayId, Conversion, Expr, ExprKind, For, LocalId, Mode, Op, Place, Program, Root, Routine, Statement,
@@ -103,10 +104,7 @@ impl Known<'_> {
             ExprKind::Const(value) => value.as_integer().map(|it| (it, it)),
             ExprKind::Load(place) => self.variable(place),
             ExprKind::Convert(Conversion::Value | Conversion::Same, operand) => self.range(operand),
-            ExprKind::Apply(op, operands) => match operands.as_slice() {
-                [a, b] => self.range(a).zip(self.range(b)).and_then(|(a, b)| combined(*op, a, b)),
-                _ => None,
-            },
+            ExprKind::Apply(op, operands) => of_operands(*op, operands, |it| self.range(it)),
             ExprKind::ApplyText(op, operands) => length(*op, operands),
             ExprKind::Convert(Conversion::Truncate | Conversion::Bits, _)
             | ExprKind::Text(_)
@@ -143,9 +141,8 @@ impl Known<'_> {
     /// Whether an operation on integers has the exact result, which is no other than its low bits only if it fits the type.
     pub fn is_exact(&self, expr: &Expr) -> bool {
         let ExprKind::Apply(op @ (Op::Add | Op::Sub | Op::Mul), operands) = &expr.kind else { return false };
-        let [a, b] = operands.as_slice() else { return false };
         let whole = self.program.repr(expr.ty).and_then(Repr::range);
-        let exact = self.range(a).zip(self.range(b)).and_then(|(a, b)| combined(*op, a, b));
+        let exact = of_operands(*op, operands, |it| self.range(it));
         whole.zip(exact).is_some_and(|(whole, exact)| whole.0 <= exact.0 && exact.1 <= whole.1)
     }
 }

@@ -1,6 +1,7 @@
 //! Statements, and what each of them means.
 
-use crate::limits::{Range, limits};
+use crate::interval::Range;
+use crate::limits::limits;
 use crate::{Expr, ExternalCall, FaultKind, Location, Place, RoutineId};
 use staunch_runtime::Context;
 

@@ -101,6 +101,20 @@ fn what_may_fault_is_not_called_the_same() {
     }
 }
 
+/// A FOR whose body may give its counter the last number of the type ends with that turn here, and never on these systems.
+#[test]
+fn a_counter_that_the_body_writes_may_reach_the_end_of_its_type() {
+    let body = "FOR i := 0 TO 10 DO IF on THEN i := 32767; END_IF; n := i; END_FOR;";
+    for systems in [("codesys", "openplc4"), ("codesys", "siemens"), ("openplc4", "codesys")] {
+        let (code, text) = verdict("counter", body, systems);
+        assert!(code != Some(0) && text.contains("FOR to the limit of its counter's type"), "{systems:?}: {text}");
+    }
+    let text = program(&format!("{body} m := 10 / d;"));
+    let (code, json) =
+        OWN.compare("counter_json", &text, &["--from", "openplc", "--to", "openplc4", "--message-format", "json"]);
+    assert!(code == Some(1) && json.contains("\"not_followed\":[\"FOR to the limit"), "{json}");
+}
+
 /// Programs that are text for text the same, and whose systems differ in what the text does not show.
 #[test]
 fn what_is_in_a_call_counts_too() {

@@ -260,6 +260,9 @@ fn what_is_no_file_is_a_message() {
         has(&Ran::of(ran).err(124), &["note: pipe is a pipe: waiting until it is"]);
     }
     has(&folder.staunch("run main.st --retain pipe").err(2), &["need a file"]);
+    // In a folder nobody asked for it.
+    assert!(Command::new("mkfifo").arg(folder.0.join("dir/pipe.st")).status().unwrap().success());
+    has(&folder.staunch("check dir").err(2), &["dir/pipe.st: this is not a file, but a pipe or a device"]);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::types::counter::{Counter, Shown};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{
     Block, Conversion, Elementary, Expr, For, Location, Op, Place, Statement, StatementKind, Step, Taking, Type, Value,
-    loops, turns,
+    alias, loops, turns,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -101,6 +101,10 @@ impl<'s> Checker<'_, 's> {
             return self.loop_by_turns(head, calls, by, span);
         }
         head.is_private = loops::is_private(&self.frame(), &head.counter, &head.body);
+        // What the body gives the counter may be beyond every limit.
+        if shown.is_none() && alias::writes(&self.frame(), &head.body, &head.counter) {
+            self.note_use(Use::Part(Part::LimitOfType), to.span);
+        }
         let local = head.counter.clone();
         let wide_step = self.step_beyond_counter(&head, &calls).cloned();
         self.loop_to(head, calls.wide_limit, wide_step.as_ref(), span)?;

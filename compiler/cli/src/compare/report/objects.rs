@@ -69,7 +69,6 @@ impl Report<'_> {
                 let _ = write!(text, ",\"why\":{}", quoted(why));
             }
             Verdict::NotFound { tried, left } => {
-                let list = |it: &[String]| it.iter().map(|it| quoted(it)).collect::<Vec<_>>().join(",");
                 let _ = write!(text, ",\"tried\":[{}],\"not_tried\":[{}]", list(tried), list(left));
             }
         }
@@ -85,9 +84,10 @@ impl Report<'_> {
             let _ =
                 write!(text, ",\"without_run\":{{\"verdict\":\"{}\",\"scans\":{scans},\"trap\":{trap}}}", it.verdict);
         }
-        let _ = write!(text, ",\"open\":[{}]", world.open.iter().map(|it| quoted(it)).collect::<Vec<_>>().join(","));
-        let in_common: Vec<_> = world.in_common.iter().map(|it| quoted(it)).collect();
-        let _ = write!(text, ",\"in_common\":[{}]", in_common.join(","));
+        let said = [("not_followed", &world.unfollowed), ("open", &world.open), ("in_common", &world.in_common)];
+        for (name, sentences) in said {
+            let _ = write!(text, ",\"{name}\":[{}]", list(sentences));
+        }
         if !judged.others.is_empty() {
             let other = |it: &Other| {
                 let without = it.without_run.map(|it| format!(",\"without_run\":{}", quoted(it.0))).unwrap_or_default();
@@ -149,6 +149,10 @@ impl Report<'_> {
             lines.join(",")
         )
     }
+}
+
+fn list(sentences: &[String]) -> String {
+    sentences.iter().map(|it| quoted(it)).collect::<Vec<_>>().join(",")
 }
 
 impl Line {

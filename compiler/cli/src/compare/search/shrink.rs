@@ -191,8 +191,6 @@ impl Shrink<'_> {
                 before.clone_from(&best.groups[group].body[run].0.inputs);
             }
         }
-        let same = best.groups.iter().all(|it: &Group| it.times > 0);
-        debug_assert!(same, "groups without a turn were left out");
         best
     }
 }

@@ -2,8 +2,8 @@
 //! and cut to a type only where that changes them, so that what two systems compute in other types has one form where it has
 //! one value. It is printed, and never run.
 
-use super::interval::{Range, result};
 use super::known::Known;
+use staunch_ir::interval::{Range, result};
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, LocalId, Op, Place, Projection, Root, Type, Value};
 use std::collections::HashMap;
 use std::rc::Rc;

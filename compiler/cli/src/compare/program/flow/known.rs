@@ -1,7 +1,7 @@
 //! What is known of variables at one place of the statements.
 
-use super::interval::{Interval, Range, result};
 use super::names::Names;
+use staunch_ir::interval::{Interval, Range, result};
 use staunch_ir::{Conversion, Expr, ExprKind, FieldId, Op, Place, Projection, Root, RoutineId, TextOp, Type, Value};
 use std::collections::HashMap;
 
@@ -16,11 +16,7 @@ impl Key {
     /// Of what only places with the same root lead to: the variables of a routine and of its instance, and globals that stand
     /// alone.
     pub fn of(place: &Place) -> Option<Self> {
-        let field = |it: &Projection| match it {
-            Projection::Field(id) => Some(*id),
-            Projection::Index { .. } | Projection::Deref { .. } => None,
-        };
-        let fields: Vec<FieldId> = place.projections.iter().map(field).collect::<Option<_>>()?;
+        let fields: Vec<FieldId> = members(place).collect::<Option<_>>()?;
         match place.root {
             Root::Instance | Root::Local(_) => {}
             Root::Globals if fields.len() == 1 => {}
@@ -31,13 +27,30 @@ impl Key {
 
     /// Whether it is a part of what a place leads to, or that of it.
     fn meets(&self, place: &Place) -> bool {
-        let mut fields = self.fields.iter();
-        self.root == place.root
-            && place.projections.iter().all(|it| match (it, fields.next()) {
-                (Projection::Field(a), Some(b)) => a == b,
-                (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => true,
-            })
+        self.root == place.root && meet(self.fields.iter().copied().map(Some), members(place))
     }
+}
+
+/// The member that each step from the root leads to; `None` where it may be any.
+fn members(place: &Place) -> impl Iterator<Item = Option<FieldId>> {
+    place.projections.iter().map(|it| match it {
+        Projection::Field(id) => Some(*id),
+        Projection::Index { .. } | Projection::Deref { .. } => None,
+    })
+}
+
+/// Whether two ways from a root may lead to the same, or one to a part of what the other leads to.
+fn meet(a: impl Iterator<Item = Option<FieldId>>, b: impl Iterator<Item = Option<FieldId>>) -> bool {
+    a.zip(b).all(|(a, b)| a.zip(b).is_none_or(|(a, b)| a == b))
+}
+
+/// Whether two places may share storage. Members of one variable are distinguished by their names alone.
+pub fn may_share(a: &Place, b: &Place) -> bool {
+    if a.root != b.root {
+        // A part of a global may be the instance, or a part of it.
+        return is_far(a) && b.root == Root::Instance || is_far(b) && a.root == Root::Instance;
+    }
+    meet(members(a), members(b))
 }
 
 /// What is known where a statement begins.

@@ -6,13 +6,12 @@
 //! reference, leaves it with all that its type holds.
 
 mod exact;
-mod interval;
 mod known;
 mod names;
 mod unread;
 mod walk;
 
-pub use interval::Range;
+pub use staunch_ir::interval::Range;
 
 use super::walked::Name;
 use known::Known;

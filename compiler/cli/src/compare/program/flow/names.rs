@@ -1,7 +1,7 @@
 //! What variables may hold, whatever the statement.
 
-use super::interval::Range;
 use crate::compare::program::walked::{Name, Walked};
+use staunch_ir::interval::Range;
 use staunch_ir::{FieldId, Place, Program, Repr, RoutineId, Type, reference};
 use std::collections::{BTreeSet, HashMap, HashSet};
 

@@ -1,11 +1,11 @@
 //! The statements of a routine in their plain form, with what is known of variables at each.
 
 use super::exact::{Here, Values, is_small};
-use super::interval::Interval;
-use super::known::{Known, is_far};
+use super::known::{Known, may_share};
 use super::names::{Names, Written};
 use crate::compare::program::walked::Walked;
 use staunch_ir::faults::{Faults, code_faults};
+use staunch_ir::interval::Interval;
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
     Argument, Arm, ArrayId, Block, Const, Expr, For, LocalId, Mode, Op, Place, Program, Root, Routine, RoutineId,
@@ -76,7 +76,7 @@ impl<'n, 'p> Way<'n, 'p> {
         let depends = |it: &Expr| {
             let mut found = false;
             visit::reads(it, &mut |read| {
-                found |= read.is_followed() || matches!(read.root, Root::Param(_)) || meets(read, place);
+                found |= read.is_followed() || matches!(read.root, Root::Param(_)) || may_share(read, place);
             });
             found
         };
@@ -114,19 +114,6 @@ fn either<'n, 'p>(a: Option<Way<'n, 'p>>, b: Option<Way<'n, 'p>>) -> Option<Way<
         (Some(a), Some(b)) => Some(a.or(b)),
         (a, b) => a.or(b),
     }
-}
-
-/// Whether two places may share storage. Members of one variable are distinguished by their names alone.
-fn meets(a: &Place, b: &Place) -> bool {
-    use staunch_ir::Projection::{Deref, Field, Index};
-    if a.root != b.root {
-        // A part of a global may be the instance, or a part of it.
-        return is_far(a) && b.root == Root::Instance || is_far(b) && a.root == Root::Instance;
-    }
-    a.projections.iter().zip(&b.projections).all(|(a, b)| match (a, b) {
-        (Field(a), Field(b)) => a == b,
-        (Field(_) | Index { .. } | Deref { .. }, _) => true,
-    })
 }
 
 /// Whether it runs statements that are not in it.

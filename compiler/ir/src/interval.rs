@@ -1,8 +1,8 @@
 //! Arithmetic on what whole numbers may be.
 
-use staunch_ir::Op;
+use crate::{Expr, Op};
 
-/// The least and the greatest that a number may be.
+/// The least and the greatest that a number may be, inclusive.
 pub type Range = (i128, i128);
 
 /// What a number may be.
@@ -53,6 +53,12 @@ impl Interval {
     }
 }
 
+/// What an operation has as its exact result, where each operand lies in a range.
+pub(crate) fn of_operands(op: Op, operands: &[Expr], range: impl Fn(&Expr) -> Option<Range>) -> Option<Range> {
+    let operands: Vec<Interval> = operands.iter().map(|it| range(it).map(Interval::new)).collect::<Option<_>>()?;
+    Some(result(op, &operands)?.range)
+}
+
 /// What an operation has as its exact result; `None` where nothing is said of that.
 pub fn result(op: Op, operands: &[Interval]) -> Option<Interval> {
     let range = match (op, operands) {
@@ -73,6 +79,11 @@ pub fn result(op: Op, operands: &[Interval]) -> Option<Interval> {
         }
         (Op::Div, [a, b]) => quotient(a.range, *b)?,
         (Op::Mod, [a, b]) => remainder(a.range, *b)?,
+        // A mask leaves some of the bits.
+        (Op::And, [a, b]) => {
+            let masks = [a, b].into_iter().filter(|it| it.range.0 >= 0);
+            (0, masks.map(|it| it.range.1).min()?)
+        }
         _ => return None,
     };
     Some(Interval::new(range))
