@@ -13,7 +13,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("staunch-host", &["staunch-runtime"]),
     ("staunch-ir", &["staunch-runtime"]),
     (
-        "staunch-frontend",
+        "staunch-syntax",
         &[
             "staunch-ir",
             "staunch-runtime",
@@ -25,6 +25,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "annotate-snippets",
         ],
     ),
+    ("staunch-frontend", &["staunch-syntax", "staunch-ir", "staunch-runtime", "rustc-hash", "strsim"]),
     ("staunch-rust", &["staunch-ir", "staunch-runtime", "quote", "syn", "proc-macro2", "prettyplease"]),
     (
         "staunch-native",

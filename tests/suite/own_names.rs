@@ -98,10 +98,10 @@ fn what_a_program_declares_is_what_its_name_means() {
     assert!(wrong.is_empty(), "{} are not what the program declares:\n{}", wrong.len(), wrong.join("\n"));
 }
 
-/// The words between the quotes of the front end's and the runtime's sources, each in one spelling.
+/// The words between the quotes of the syntax's, the front end's and the runtime's sources, each in one spelling.
 fn words() -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
-    for folder in ["compiler/frontend/src", "runtime/core/src"] {
+    for folder in ["compiler/syntax/src", "compiler/frontend/src", "runtime/core/src"] {
         read(&project().join(folder), &mut found);
     }
     found

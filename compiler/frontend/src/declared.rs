@@ -3,8 +3,8 @@
 use crate::ast::{File, Item, Pou, PouKind, TypeDecl, VarBlock};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::lex::{Declaration, Declared, Scope};
+use crate::parse::attribute;
 use crate::source::{Sources, Span};
-use crate::syntax::attribute;
 use rustc_hash::FxHashMap;
 
 /// What all files declare.

@@ -1,16 +1,6 @@
 //! Structured Text in, typed intermediate representation out.
 #![forbid(unsafe_code)]
 
-pub mod vendor;
-
-mod diagnostic;
-mod source;
-mod spelling;
-
-pub mod ast;
-mod lex;
-mod syntax;
-
 mod declared;
 mod testing;
 
@@ -20,7 +10,6 @@ mod tasks;
 
 mod allow;
 mod dialect;
-mod foreign;
 mod inherit;
 mod locate;
 mod log;
@@ -41,17 +30,22 @@ mod program;
 
 mod lints;
 
+pub use staunch_syntax::{ast, vendor};
+
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
 pub use dialect::{Dialect, rules};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::{OPEN_OPTIONS, OpenOption, Options};
+pub use parse::{parse, parse_file};
+pub use prelude::{Declares, UNITS as LIBRARY, Unit as LibraryUnit};
 pub use source::{Source, Sources, Span};
 pub use spelling::nearest;
-pub use syntax::{parse, parse_file};
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
 pub use types::coverage::{Condition, CoverageKind, CoveragePoint, Decision, Formula};
 pub use vendor::Reference;
+
+use staunch_syntax::{diagnostic, foreign, lex, parse, source, spelling};
 
 use lex::{Declared, Known, Subject};
 use log::Log;
@@ -262,7 +256,7 @@ fn report_combined(problem: Diagnostic, log: &mut Log<'_>) {
 fn report_reserved(span: Span, log: &mut Log<'_>) {
     if !log.dialect(span).has_configurations_as_names() {
         let own = log.sources.text(span);
-        log.report(syntax::reserved(span, &own.to_ascii_uppercase(), own));
+        log.report(parse::reserved(span, &own.to_ascii_uppercase(), own));
     }
 }
 
@@ -279,7 +273,7 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
             is_broken = true;
             continue;
         }
-        files.push(syntax::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
+        files.push(parse::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again, and JSON, which is one pragma.
         let is_wrong = diagnostics[before..].iter().any(|it| it.severity == Severity::Error);
@@ -311,7 +305,7 @@ fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnosti
     for (file, number) in files.iter_mut().zip(0u16..).filter(|(it, _)| !it.undecided.is_empty()) {
         let source = sources.get(number);
         let read = |known, diagnostics: &mut Vec<Diagnostic>| {
-            syntax::parse_with(number, &source.text, sources.defined(source), known, diagnostics)
+            parse::parse_with(number, &source.text, sources.defined(source), known, diagnostics)
         };
         let mut found = Vec::new();
         let first = std::mem::replace(file, read(Known::All(&known), &mut found));

@@ -4,7 +4,7 @@
 use crate::ast::{File, Item, Name, Pou, VarBlock, VarDecl};
 use crate::dialect::Dialect;
 use crate::log::Log;
-use crate::syntax::address_without_sign;
+use crate::parse::address_without_sign;
 use crate::{Code, Diagnostic, Fix, Span};
 
 /// Puts addresses in place of aliases.

@@ -15,10 +15,10 @@ use std::sync::LazyLock;
 
 /// A unit of the library.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Unit {
+pub struct Unit {
     pub name: &'static str,
     text: &'static str,
-    use_: Use,
+    pub declares: Declares,
     /// The dialects that have it by this name; none stands for all.
     pub dialects: &'static [Dialect],
     /// The libraries of CODESYS and TwinCAT that have it, whose names may be before its own.
@@ -29,34 +29,34 @@ pub(crate) struct Unit {
 
 impl Unit {
     pub fn is_function(&self) -> bool {
-        self.use_ == Use::Function
+        self.declares == Declares::Function
     }
 
     /// Whether what it declares is one thing by its own name. A data type is shared: what is handed to a block is of it, so
     /// the program's takes its place.
     fn has_own_name(&self) -> bool {
-        match self.use_ {
-            Use::Function | Use::Value => true,
-            Use::Type => self.text.contains("FUNCTION_BLOCK"),
-            Use::Global | Use::Space | Use::Open => false,
+        match self.declares {
+            Declares::Function | Declares::Value => true,
+            Declares::Type => self.text.contains("FUNCTION_BLOCK"),
+            Declares::Global | Declares::Space | Declares::Open => false,
         }
     }
 
     pub fn is_value(&self) -> bool {
-        self.use_ == Use::Value
+        self.declares == Declares::Value
     }
 
     /// By whose rules of values it computes: what the standard describes is written by the standard's. A unit test's
     /// framework is a part of the program that it tests.
     fn rules(&self, dialect: Dialect) -> Dialect {
-        let is_standard = self.use_ != Use::Open && self.dialects.contains(&Dialect::Iec);
+        let is_standard = self.declares != Declares::Open && self.dialects.contains(&Dialect::Iec);
         if is_standard { Dialect::Iec } else { dialect }
     }
 }
 
 /// What a unit declares, and so where its name is its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Use {
+pub enum Declares {
     Type,
     Function,
     /// A global constant.
@@ -93,11 +93,11 @@ pub(crate) const LIST: &str = "Global_Variables";
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
 macro_rules! units {
-    ($($use_:ident $name:literal $file:tt $([$($dialect:ident)+ $(: $($library:ident)+)?])? $($need:literal)*;)*) => {
+    ($($declares:ident $name:literal $file:tt $([$($dialect:ident)+ $(: $($library:ident)+)?])? $($need:literal)*;)*) => {
         &[$(Unit {
             name: $name,
             text: units!(@text $file),
-            use_: Use::$use_,
+            declares: Declares::$declares,
             dialects: &[$($(Dialect::$dialect),+)?],
             libraries: &[$($($(stringify!($library)),+)?)?],
             needs: &[$($need),*],
@@ -184,7 +184,7 @@ macro_rules! counter {
 }
 
 /// Every unit. Units with the same name are of different dialects.
-pub(crate) const UNITS: &[Unit] = units! {
+pub const UNITS: &[Unit] = units! {
     Type     "BLINK"            "blink"            [Codesys: Util];
     Type     "GEN_MODE"         "gen_mode"         [Codesys: Util];
     Type     "GEN"              "gen"              [Codesys: Util] "GEN_MODE";
@@ -436,7 +436,7 @@ pub(crate) fn units(name: &str) -> impl Iterator<Item = Unit> {
 /// Whether a namespace is the standard library's, in which standard functions are, too: `System.Math`.
 pub(crate) fn is_standard_space(name: &str) -> bool {
     let is_in_system = name.split_once('.').is_some_and(|it| it.0.eq_ignore_ascii_case(SYSTEM));
-    is_in_system && units(name).any(|it| it.use_ == Use::Space)
+    is_in_system && units(name).any(|it| it.declares == Declares::Space)
 }
 
 /// The unit that a dialect has by this name.
@@ -610,12 +610,14 @@ impl Uses {
             let first = outer.unwrap_or(first);
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
-            let is_declared = match any.use_ {
-                Use::Type | Use::Function | Use::Space => declares(before, after, &types),
-                Use::Value | Use::Global => declares(before, after, &types) || types.declare_value(before, after),
-                Use::Open => false,
+            let is_declared = match any.declares {
+                Declares::Type | Declares::Function | Declares::Space => declares(before, after, &types),
+                Declares::Value | Declares::Global => {
+                    declares(before, after, &types) || types.declare_value(before, after)
+                }
+                Declares::Open => false,
             };
-            if is_declared && types.spaces > 0 && any.use_ != Use::Space {
+            if is_declared && types.spaces > 0 && any.declares != Declares::Space {
                 self.declared_in_spaces.insert(any.name);
             } else if is_declared {
                 self.declared.insert(any.name);
@@ -757,13 +759,13 @@ fn declares(before: Option<(Kind, &str)>, after: Option<Kind>, types: &TypeBlock
 /// Whether a name between these tokens means the unit.
 fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool {
     let is_after = |kind: Kind| before.is_some_and(|it| it.0 == kind);
-    match unit.use_ {
-        Use::Space | Use::Open => !is_after(Kind::Dot),
-        Use::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
+    match unit.declares {
+        Declares::Space | Declares::Open => !is_after(Kind::Dot),
+        Declares::Function => after == Some(Kind::OpenParen) && !is_after(Kind::Dot),
         // A variable of the name, `PI : REAL`, is another one.
-        Use::Value => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen | Kind::Dot)),
-        Use::Global => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen)),
-        Use::Type => {
+        Declares::Value => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen | Kind::Dot)),
+        Declares::Global => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen)),
+        Declares::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
             let extends = before.is_some_and(|it| it.1.eq_ignore_ascii_case("EXTENDS"));
             (is_type || extends) && after != Some(Kind::OpenParen)
@@ -839,57 +841,4 @@ fn is_system(word: &str) -> bool {
 fn range((start, end): (u32, u32)) -> core::ops::Range<usize> {
     let offset = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
     offset(start)..offset(end)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Each unit alone, with what it needs, compiles without a word, and is on the page of the library.
-    #[test]
-    fn every_unit_compiles() {
-        let page = include_str!("../../../docs/library.md");
-        for unit in UNITS {
-            let dialect = unit.dialects.first().copied().unwrap_or_default();
-            let call = match unit.use_ {
-                Use::Type => format!("VAR_GLOBAL it : {}; END_VAR", unit.name),
-                // It is included where one of its functions is named.
-                Use::Space if unit.name == WRITE_PROTECTED => {
-                    format!("PROGRAM Main {WRITE_PROTECTED}_BOOL(); END_PROGRAM")
-                }
-                Use::Space | Use::Open => format!("USING {};", unit.name),
-                Use::Function => format!("PROGRAM Main {}(); END_PROGRAM", unit.name),
-                Use::Global => format!("PROGRAM Main VAR it : BOOL; END_VAR it := {}; END_PROGRAM", unit.name),
-                Use::Value => format!("VAR_GLOBAL it : ARRAY[0..1] OF LREAL := [{}]; END_VAR", unit.name),
-            };
-            let mut sources = Sources::default();
-            sources.add(Source::new("main.st", call));
-            let options = Options { dialect, ..Options::default() };
-            let extended = Extended::of(&sources, &options).unwrap_or_else(|| panic!("{} is not found", unit.name));
-            let names: Vec<_> = extended.named.iter().map(|it| it.unit.name).collect();
-            assert!(names.contains(&unit.name), "{names:?}");
-            assert!(unit.needs.iter().all(|it| names.contains(it)), "{names:?}");
-            let reported = crate::run(&extended.sources, &options, crate::Bodies::Dropped).diagnostics;
-            let own = reported.iter().filter(|it| it.span.file > 0 && it.severity == Severity::Error);
-            assert_eq!(own.map(|it| it.message.as_str()).collect::<Vec<_>>(), Vec::<&str>::new(), "{}", unit.name);
-            assert!(page.contains(&format!("`{}`", unit.name)), "{} is not on the page", unit.name);
-        }
-    }
-
-    #[test]
-    fn a_name_alone_brings_nothing() {
-        let texts = [
-            "PROGRAM Main VAR pid, blink : INT; END_VAR pid := blink; END_PROGRAM",
-            "PROGRAM Main VAR x : Mine; END_VAR x.PACK(); END_PROGRAM",
-            "(* b : BLINK; *) PROGRAM Main END_PROGRAM",
-            "TYPE x : INT; POINT : STRUCT a : INT; END_STRUCT; END_TYPE VAR_GLOBAL p : POINT; END_VAR",
-            "FUNCTION_BLOCK FINAL PID END_FUNCTION_BLOCK VAR_GLOBAL p : PID; END_VAR",
-        ];
-        for text in texts {
-            let mut sources = Sources::default();
-            sources.add(Source::new("main.st", text.to_owned()));
-            let options = Options { dialect: Dialect::Codesys, ..Options::default() };
-            assert!(Extended::of(&sources, &options).is_none(), "{text}");
-        }
-    }
 }

@@ -44,6 +44,7 @@ pub mod faults;
 pub mod interpret;
 pub mod layout;
 pub mod loops;
+pub mod narrow;
 pub mod pieces;
 pub mod promote;
 pub mod reached;

@@ -5,9 +5,9 @@ use super::checker::Checker;
 use super::operand::{Operand, computed, pattern};
 use super::operator::{Meeting, Sides};
 use crate::dialect::rules::Functions;
-use crate::types::coercion::is_narrow;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
+use staunch_ir::narrow::is_narrow;
 use staunch_ir::{Conversion, Elementary, Expr, ExprKind, Op, Type};
 
 impl<'s> Checker<'_, 's> {

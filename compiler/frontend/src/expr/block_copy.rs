@@ -95,7 +95,7 @@ impl<'s> Checker<'_, 's> {
             return true;
         }
         if let Instruction::Service(service) = instruction {
-            self.report(crate::syntax::controller_service(name.span, name.text, service));
+            self.report(crate::parse::controller_service(name.span, name.text, service));
             return true;
         }
         match self.in_order(*name, names, arguments, span) {

@@ -2,9 +2,9 @@
 
 use super::checker::Checker;
 use super::operand::Operand;
-use super::promotion::stored;
 use crate::types::coercion::{as_number, widens};
 use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::narrow::stored;
 use staunch_ir::{BoundsId, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Op, StringType, Type, Value};
 
 impl<'s> Checker<'_, 's> {

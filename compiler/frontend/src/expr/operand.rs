@@ -1,10 +1,10 @@
 //! Operands: typed expressions, and literals that take the type of their place.
 
 use super::checker::Checker;
-pub(crate) use super::promotion::stored;
 use super::real::Real;
-use crate::types::coercion::is_narrow;
 use crate::{Code, Diagnostic, Span, ast};
+use staunch_ir::narrow::is_narrow;
+pub(crate) use staunch_ir::narrow::stored;
 use staunch_ir::{Elementary, Expr, Op, Type, Value};
 
 /// A checked expression, or a number that no type has been asked of yet.

@@ -5,9 +5,10 @@ use super::coverage::JOINED;
 use super::operand::{Operand, computed};
 use crate::dialect::Dialect;
 use crate::dialect::rules::{Functions, Literals};
-use crate::types::coercion::{Join, as_number, is_narrow, join, join_in};
+use crate::types::coercion::{Join, as_number, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
+use staunch_ir::narrow::is_narrow;
 use staunch_ir::{Block, Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
 use staunch_runtime::Class;
 

@@ -83,31 +83,3 @@ fn end_innermost(open: &mut Vec<(u32, RegionId)>, changes: &mut Vec<(u32, Region
     let Some((end, _)) = open.pop() else { return };
     changes.extend(open.last().map(|(_, outer)| (end, *outer)));
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn span(start: u32, end: u32) -> Span {
-        Span { file: 0, start, end }
-    }
-
-    #[test]
-    fn the_innermost_region_at_a_place() {
-        let mut regions = Regions::default();
-        let space = |it| SpaceId(it);
-        let stretches =
-            [(span(0, 100), space(0)), (span(10, 50), space(1)), (span(20, 30), space(2)), (span(50, 60), space(3))];
-        regions.add_file(stretches);
-        let at = |place| regions.around(span(place, place)).map(|it| it.space.0).collect::<Vec<_>>();
-        assert_eq!(at(0), [0]);
-        assert_eq!(at(10), [1, 0]);
-        assert_eq!(at(20), [2, 1, 0]);
-        assert_eq!(at(30), [1, 0]);
-        assert_eq!(at(49), [1, 0]);
-        assert_eq!(at(50), [3, 0]);
-        assert_eq!(at(60), [0]);
-        assert_eq!(at(200), [0]);
-        assert!(regions.at(Span { file: 1, start: 0, end: 0 }).is_none());
-    }
-}

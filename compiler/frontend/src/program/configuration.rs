@@ -566,30 +566,3 @@ impl<'s> Declarations<'s> {
         true
     }
 }
-
-#[cfg(test)]
-mod test {
-    use super::looked_at;
-
-    #[test]
-    fn a_single_is_looked_at_in_whole_parts_of_its_interval() {
-        // In microseconds. 1,999 ms have no part that is found.
-        let expected = [
-            (10_000, 10_000),
-            (11_000, 1_000),
-            (20_000, 10_000),
-            (21_000, 7_000),
-            (25_000, 5_000),
-            (30_000, 10_000),
-            (31_000, 1_000),
-            (99_000, 9_000),
-            (1_999_000, 1_000),
-            (1_500, 1_500),
-            (15_500, 7_750),
-            (500, 500),
-        ];
-        for (interval, part) in expected {
-            assert_eq!(looked_at(interval * 1000), part * 1000, "of {interval} us");
-        }
-    }
-}

@@ -2,6 +2,7 @@
 
 use crate::dialect::Dialect;
 use staunch_ir::Elementary;
+use staunch_ir::narrow::is_narrow;
 
 /// Whether every value of `from` is one of `to`, by the standard's figure of implicit conversions.
 pub(crate) fn widens(from: Elementary, to: Elementary) -> bool {
@@ -97,11 +98,6 @@ pub(crate) fn as_number(ty: Elementary) -> Elementary {
         Elementary::Lword => Elementary::Ulint,
         other => other,
     }
-}
-
-/// Whether this is an integer or a bit string, BOOL aside, of fewer than 32 bits.
-pub(crate) fn is_narrow(ty: Elementary) -> bool {
-    as_number(ty).is_integer() && ty.repr().size() < 4
 }
 
 /// The type that two operands give a value which is computed at more bits: that of more bits, the

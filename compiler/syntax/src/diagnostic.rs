@@ -3,10 +3,10 @@
 mod codes;
 mod levels;
 mod render;
-pub(crate) mod wording;
+pub mod wording;
 
 pub use codes::Code;
-pub(crate) use levels::lint;
+pub use levels::lint;
 pub use levels::{Level, Levels};
 pub use render::{Format, Style, render};
 

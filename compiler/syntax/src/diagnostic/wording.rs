@@ -1,7 +1,7 @@
 //! Words of messages: lists and articles.
 
 /// `a`, `a or b`, `a, b or c`, each in backticks.
-pub(crate) fn list(names: &[&str]) -> String {
+pub fn list(names: &[&str]) -> String {
     let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.as_slice() {
         [] => String::new(),
@@ -11,7 +11,7 @@ pub(crate) fn list(names: &[&str]) -> String {
 }
 
 /// `a word`, `an INT`, `an FBD_COUNTER`: an abbreviation without a vowel is read letter by letter.
-pub(crate) fn article(word: &str) -> String {
+pub fn article(word: &str) -> String {
     let first = word.split(|it: char| !it.is_ascii_alphanumeric()).next().unwrap_or_default();
     let spelled = matches!(first, "LREAL" | "LTIME" | "LWORD")
         || (!first.contains(|it: char| it.is_ascii_lowercase()) && !first.contains(['A', 'E', 'I', 'O', 'U']));

@@ -14,7 +14,7 @@ struct Kind {
 const EXPORT: &str = "export the program as text, and check that";
 
 /// What a file that does not parse turns out to be.
-pub(crate) fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
+pub fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
     let text = source.text.as_str();
     let kind = binary(text)
         .or_else(|| xml(text))
@@ -66,7 +66,7 @@ fn xml(text: &str) -> Option<Kind> {
 }
 
 /// Whether a text is JSON, also where the lexer takes all of it for a pragma.
-pub(crate) fn is_json(source: &Source) -> bool {
+pub fn is_json(source: &Source) -> bool {
     json(&source.text).is_some()
 }
 

@@ -204,16 +204,16 @@ impl Source {
 
     /// The same, as a unit of the library that the compiler brings along.
     #[must_use]
-    pub(crate) fn bundled(self) -> Self {
+    pub fn bundled(self) -> Self {
         Self { is_bundled: true, ..self }
     }
 
-    pub(crate) fn is_bundled(&self) -> bool {
+    pub fn is_bundled(&self) -> bool {
         self.is_bundled
     }
 
     /// Whether it is that unit of the library, and not a file of the user's with its path.
-    pub(crate) fn is_unit(&self, path: &str) -> bool {
+    pub fn is_unit(&self, path: &str) -> bool {
         self.is_bundled && self.path == path
     }
 
@@ -420,7 +420,7 @@ impl Sources {
     }
 
     /// The device of a project of OpenPLC Editor, where the files are of one.
-    pub(crate) const fn device(&self) -> Option<&Device> {
+    pub const fn device(&self) -> Option<&Device> {
         self.device.as_ref()
     }
 

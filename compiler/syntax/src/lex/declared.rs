@@ -4,7 +4,7 @@ use crate::source::Span;
 use staunch_runtime::literal;
 
 /// What is known of what a program declares.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub enum Known<'k, 's> {
     /// Not yet: parts that it decides are left out, and where it would is noted.
     Later,
@@ -27,7 +27,7 @@ impl<'k, 's> Known<'k, 's> {
 }
 
 /// What is asked of the declarations of a program.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub enum Question<'s> {
     /// `defined(variable: x)`, `defined(type: T)` and their like.
     Is(Subject, &'s str),
@@ -48,7 +48,7 @@ pub enum Subject {
 }
 
 /// The declarations of all files.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Declared<'s> {
     pub types: Vec<Declaration<'s>>,
     /// Those of a FUNCTION_BLOCK, `Valve.Open`, with its name.

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use std::sync::LazyLock;
 
 /// What an instruction is about, where it is one of these.
-pub(crate) fn controller_service(name: &str) -> Option<&'static str> {
+pub fn controller_service(name: &str) -> Option<&'static str> {
     BY_NAME.get(&packed(name)?).copied()
 }
 

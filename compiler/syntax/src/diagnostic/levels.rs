@@ -45,7 +45,7 @@ impl Levels {
 }
 
 /// A lint by its code; `None` for `warnings`, which means all.
-pub(crate) fn lint(name: &str) -> Result<Option<Code>, String> {
+pub fn lint(name: &str) -> Result<Option<Code>, String> {
     if name.eq_ignore_ascii_case("warnings") {
         return Ok(None);
     }

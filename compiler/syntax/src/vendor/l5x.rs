@@ -15,7 +15,7 @@ mod task;
 use super::assembly::{Assembly, Trouble};
 use super::xml::{Broken, Part, Reader};
 use names::Names;
-pub(crate) use service::controller_service;
+pub use service::controller_service;
 
 /// Reads what follows the root.
 pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {

@@ -4,7 +4,7 @@ use std::hash::{Hash, Hasher};
 
 /// A name as a table key.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Key<'s>(pub &'s str);
+pub struct Key<'s>(pub &'s str);
 
 impl PartialEq for Key<'_> {
     fn eq(&self, other: &Self) -> bool {

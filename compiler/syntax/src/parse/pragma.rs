@@ -63,7 +63,7 @@ fn pragmas_here<'s>(input: &mut In<'_, '_, 's>) -> Vec<Name<'s>> {
 }
 
 /// The name in `attribute 'strict'`.
-pub(crate) fn attribute(text: &str) -> Option<&str> {
+pub fn attribute(text: &str) -> Option<&str> {
     let (word, rest) = text.trim().split_once(|it: char| it.is_whitespace())?;
     let name = rest.trim_start().strip_prefix('\'')?.split('\'').next()?;
     word.eq_ignore_ascii_case("attribute").then_some(name)

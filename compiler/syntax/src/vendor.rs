@@ -16,7 +16,7 @@ mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
 pub use device::Device;
-pub(crate) use l5x::controller_service;
+pub use l5x::controller_service;
 pub use listing::{Reference, definitions, listed, project_name, references};
 pub use openplc::is_project as is_openplc_project;
 

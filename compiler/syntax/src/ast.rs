@@ -69,7 +69,7 @@ pub struct Region<'s> {
 impl<'s> File<'s> {
     /// Takes out the bodies of the POUs, in order, each with those of its routines after it: they can be let
     /// go when they have been checked.
-    pub(crate) fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
+    pub fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {
         let pous = self.items.iter_mut().filter_map(|it| match it {
             Item::Pou(pou) => Some(pou),
             Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
@@ -688,7 +688,7 @@ pub struct Expr<'s> {
 
 impl<'s> Expr<'s> {
     /// The first name of a path.
-    pub(crate) fn first_name(&self) -> Option<Name<'s>> {
+    pub fn first_name(&self) -> Option<Name<'s>> {
         match &self.kind {
             ExprKind::Name(name) => Some(*name),
             ExprKind::Member(owner, _) => owner.first_name(),
@@ -697,7 +697,7 @@ impl<'s> Expr<'s> {
     }
 
     /// The variable that a member or an element is of: `a` of `a.b[1].c`.
-    pub(crate) fn variable(&self) -> Option<Name<'s>> {
+    pub fn variable(&self) -> Option<Name<'s>> {
         match &self.kind {
             ExprKind::Member(owner, _) | ExprKind::Index(owner, _) => owner.variable(),
             _ => self.first_name(),
@@ -705,7 +705,7 @@ impl<'s> Expr<'s> {
     }
 
     /// `a.b.c`, where it is that: names and points.
-    pub(crate) fn path(&self) -> Option<Path<'s>> {
+    pub fn path(&self) -> Option<Path<'s>> {
         match &self.kind {
             ExprKind::Name(name) => Some(vec![*name]),
             ExprKind::Member(owner, name) => {
@@ -720,7 +720,7 @@ impl<'s> Expr<'s> {
 
 impl Expr<'_> {
     /// The expression in its parentheses.
-    pub(crate) fn bare(&self) -> &Self {
+    pub fn bare(&self) -> &Self {
         match &self.kind {
             ExprKind::Paren(inner) => inner.bare(),
             _ => self,
@@ -857,7 +857,7 @@ pub enum LiteralValue<'s> {
 }
 
 /// Calls `see` with each list of statements that a statement holds.
-pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMut(&'a [Statement<'s>])) {
+pub fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMut(&'a [Statement<'s>])) {
     match &statement.kind {
         StatementKind::If { branches, otherwise } => {
             branches.iter().for_each(|(_, body)| see(body));
@@ -894,7 +894,7 @@ pub(crate) fn each_body<'a, 's>(statement: &'a Statement<'s>, see: &mut dyn FnMu
 }
 
 /// Calls `see` with each statement, at any depth.
-pub(crate) fn each_statement<'a, 's>(statements: &'a [Statement<'s>], see: &mut dyn FnMut(&'a Statement<'s>)) {
+pub fn each_statement<'a, 's>(statements: &'a [Statement<'s>], see: &mut dyn FnMut(&'a Statement<'s>)) {
     for statement in statements {
         see(statement);
         each_body(statement, &mut |body| each_statement(body, see));
@@ -902,7 +902,7 @@ pub(crate) fn each_statement<'a, 's>(statements: &'a [Statement<'s>], see: &mut 
 }
 
 /// Calls `visit` with every expression in the statements, outer ones first.
-pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn FnMut(&'a Expr<'s>)) {
+pub fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn FnMut(&'a Expr<'s>)) {
     for statement in statements {
         match &statement.kind {
             StatementKind::Empty
@@ -962,7 +962,7 @@ pub(crate) fn each_expr<'a, 's>(statements: &'a [Statement<'s>], visit: &mut dyn
 }
 
 /// Calls `visit` with the expression and every one in it, outer ones first.
-pub(crate) fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
+pub fn each_part<'a, 's>(expr: &'a Expr<'s>, visit: &mut dyn FnMut(&'a Expr<'s>)) {
     visit(expr);
     match &expr.kind {
         ExprKind::Literal(_) | ExprKind::Name(_) | ExprKind::Address(_) => {}

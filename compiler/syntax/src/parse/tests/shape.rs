@@ -1,6 +1,6 @@
 //! Trees as short text, so that a test is a line.
 
-use crate::{ast::*, diagnostic::Diagnostic, syntax::parse};
+use crate::{ast::*, diagnostic::Diagnostic, parse::parse};
 
 pub fn parsed(text: &str) -> (File<'_>, Vec<Diagnostic>) {
     let mut diagnostics = Vec::new();

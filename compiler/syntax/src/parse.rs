@@ -54,9 +54,9 @@ use crate::{
     source::{Sources, Span},
 };
 
-pub(crate) use diagnostics::{address_without_sign, controller_service, reserved};
+pub use diagnostics::{address_without_sign, controller_service, reserved};
 use parser::{Extra, State};
-pub(crate) use pragma::attribute;
+pub use pragma::attribute;
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {

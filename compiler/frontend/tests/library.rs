@@ -1,0 +1,55 @@
+//! The library that is written in Structured Text is a part of the programs that name it, and of no others.
+
+use staunch_frontend::{Compilation, Declares, Dialect, LIBRARY, Options, Severity, Source, Sources, compile};
+
+fn compiled(text: &str, dialect: Dialect) -> Compilation {
+    let mut sources = Sources::default();
+    sources.add(Source::new("main.st", text.to_owned()));
+    compile(&sources, &Options { dialect, ..Options::default() })
+}
+
+/// Each unit alone, with what it needs, compiles without a word about the library, and is on its page.
+#[test]
+fn every_unit_compiles() {
+    let page = include_str!("../../../docs/library.md");
+    for unit in LIBRARY {
+        let name = unit.name;
+        let dialect = unit.dialects.first().copied().unwrap_or_default();
+        let call = match unit.declares {
+            Declares::Type => format!("VAR_GLOBAL it : {name}; END_VAR"),
+            // It is included where one of its functions is named.
+            Declares::Space if name == "TcUnit.WRITE_PROTECTED" => format!("PROGRAM Main {name}_BOOL(); END_PROGRAM"),
+            Declares::Space | Declares::Open => format!("USING {name};"),
+            Declares::Function => format!("PROGRAM Main {name}(); END_PROGRAM"),
+            Declares::Global => format!("PROGRAM Main VAR it : BOOL; END_VAR it := {name}; END_PROGRAM"),
+            Declares::Value => format!("VAR_GLOBAL it : ARRAY[0..1] OF LREAL := [{name}]; END_VAR"),
+        };
+        let reported = compiled(&call, dialect).diagnostics;
+        // A FUNCTION lacks its arguments, and a list is no value.
+        let is_missing = |it: &str| it.contains("is not declared") || it.contains("there is no ");
+        let wrong = reported.iter().filter(|it| it.severity == Severity::Error);
+        let wrong: Vec<_> = wrong.filter(|it| it.span.file > 0 || is_missing(&it.message)).collect();
+        assert!(wrong.is_empty(), "{name}: {wrong:?}");
+        assert!(page.contains(&format!("`{name}`")), "{name} is not on the page");
+    }
+}
+
+#[test]
+fn a_name_alone_brings_nothing() {
+    let texts = [
+        "PROGRAM Main VAR pid, blink : INT; END_VAR pid := blink; END_PROGRAM",
+        "FUNCTION_BLOCK Mine METHOD PUBLIC PACK END_METHOD END_FUNCTION_BLOCK
+PROGRAM Main VAR x : Mine; END_VAR x.PACK(); END_PROGRAM",
+        "(* b : BLINK; *) PROGRAM Main END_PROGRAM",
+        "TYPE x : INT; POINT : STRUCT a : INT; END_STRUCT; END_TYPE
+PROGRAM Main VAR p : POINT; END_VAR p.a := 1; END_PROGRAM",
+        "FUNCTION_BLOCK FINAL PID END_FUNCTION_BLOCK PROGRAM Main VAR p : PID; END_VAR p(); END_PROGRAM",
+    ];
+    for text in texts {
+        let compilation = compiled(text, Dialect::Codesys);
+        let files = compilation.program.map(|it| it.files.len());
+        assert_eq!(files, Some(1), "{text}: {:?}", compilation.diagnostics);
+    }
+    let of_the_library = compiled("PROGRAM Main VAR p : PID; END_VAR p(); END_PROGRAM", Dialect::Codesys);
+    assert!(of_the_library.program.is_some_and(|it| it.files.len() > 1));
+}
