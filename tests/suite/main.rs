@@ -8,6 +8,7 @@ mod mistakes;
 mod vectors;
 
 mod constants;
+mod converted;
 mod effects;
 mod facts;
 mod operations;

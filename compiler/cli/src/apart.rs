@@ -5,8 +5,8 @@ use crate::session::Session;
 use staunch_host::{Expectations, Role, keep_apart};
 use std::path::{Path, PathBuf};
 
-/// `-o` of a build, also where its name is not given.
-pub fn build(session: &Session, out: &Path) -> Result<(), String> {
+/// `-o` of a build or a conversion, also where its name is not given.
+pub fn output(session: &Session, out: &Path) -> Result<(), String> {
     check(session, &[], &[("-o", out)])
 }
 

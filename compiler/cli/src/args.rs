@@ -37,6 +37,8 @@ pub enum Command {
     Report(Report),
     /// Show what changes when a program moves to another system
     Compare(Compare),
+    /// Write what is read of any system's files as one file of Structured Text
+    Convert(Convert),
     /// Print the long text of a diagnostic, or the list of all
     Explain(Explain),
     /// Print completions for a shell
@@ -337,6 +339,15 @@ pub struct Bench {
     /// The back end that runs the program
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Convert {
+    #[command(flatten)]
+    pub files: Files,
+    /// The file to write; - for standard output
+    #[arg(short, long, value_name = "OUT.st")]
+    pub output: PathBuf,
 }
 
 #[derive(Clone, Debug, Args)]

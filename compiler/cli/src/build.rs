@@ -21,7 +21,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     let target = args.target.as_deref().map(full_name);
     let target = target.as_deref();
     let out = out(session, args, target);
-    apart::build(session, &out)?;
+    apart::output(session, &out)?;
     match args.emit {
         Emit::Rust => {
             let options = staunch_rust::Options { state: State::Lean, names: args.names, ..Default::default() };

@@ -23,6 +23,7 @@ mod rustc;
 
 mod bench;
 mod compare;
+mod convert;
 mod machine;
 mod run;
 mod test;
@@ -105,6 +106,9 @@ fn dispatch(cli: Cli) -> u8 {
         Command::Doctor(it) => doctor::doctor(it),
         Command::Report(it) => {
             Session::start_to_build(&cli.common, &it.files).and_then(|session| report::report(&session, it))
+        }
+        Command::Convert(it) => {
+            Session::start_to_build(&cli.common, &it.files).and_then(|session| convert::convert(&session, it))
         }
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),

@@ -70,6 +70,12 @@ impl Session {
         Ok(staunch_frontend::compile(sources, &options))
     }
 
+    /// Other sources, for a program that others finish.
+    pub fn compile_to_build(&self, sources: &Sources) -> Result<Compilation, String> {
+        let options = Options { is_run: false, ..options(&self.common, &self.project)? };
+        Ok(staunch_frontend::compile(sources, &options))
+    }
+
     /// The program that is not tests alone: what `run` would run. There is nothing more to say of it.
     pub fn without_tests(&self, is_covered: bool) -> Result<Compilation, String> {
         let coverage = covered(&self.sources, is_covered);

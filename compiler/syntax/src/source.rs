@@ -457,6 +457,26 @@ impl Sources {
         Self { files: files.collect(), ..self.clone() }
     }
 
+    /// The program's own files as one of plain text, each below a line that names it where there are several; libraries stay
+    /// as they are. What a project defines for its files, and what it says of its device, is not a part of that.
+    #[must_use]
+    pub fn as_one_file(&self, path: &str) -> Self {
+        let (own, others): (Vec<_>, Vec<_>) = self.files.iter().partition(|it| !it.is_of_library());
+        let mut text = String::new();
+        for file in &own {
+            if own.len() > 1 {
+                let gap = if text.is_empty() { "" } else { "\n" };
+                text += &format!("{gap}// {}\n", file.path);
+            }
+            text += &file.text;
+            if !text.ends_with('\n') {
+                text.push('\n');
+            }
+        }
+        let files = core::iter::once(Source::new(path, text)).chain(others.into_iter().cloned());
+        Self { files: files.collect(), defined: Vec::new(), device: None, ..self.clone() }
+    }
+
     /// Adds a file; its number is its position.
     pub fn add(&mut self, source: Source) {
         let device = source.origin.as_ref().and_then(|it| it.device.clone());

@@ -54,6 +54,42 @@ fn project(name: &str) -> Folder {
 }
 
 #[test]
+fn a_project_of_twincat_is_written_as_structured_text() {
+    let folder = project("converted");
+    let run = "--stimulus in.csv --scans 3 --vars GVL_Line.parts --trace -";
+    let before = folder.staunch(&format!("run Line.plcproj {run}")).out(0);
+    has(&folder.staunch("convert Line.plcproj -o line.st").err(0), &["Converted Line.plcproj to line.st"]);
+    has(&folder.read("line.st"), &["// POUs/MAIN.TcPOU\n", "parts(CU := go, PV := 5);", "END_FUNCTION_BLOCK"]);
+    assert_eq!(folder.staunch(&format!("run line.st {run}")).out(0), before);
+    assert_eq!(folder.staunch("convert Line.plcproj -o -").out(0), folder.read("line.st"));
+    // What is written is no source, and a program with a mistake is not written.
+    has(&folder.staunch("convert line.st -o line.st").err(2), &["line.st"]);
+    folder.write("wrong.st", "PROGRAM Main VAR n : INT; END_VAR n := m; END_PROGRAM");
+    has(&folder.staunch("convert wrong.st -o other.st").err(1), &["`m` is not declared"]);
+    assert!(!folder.0.join("other.st").exists());
+}
+
+/// The name of a list is its file's, which one text does not have.
+#[test]
+fn what_files_say_beside_their_text_is_not_lost() {
+    let files = [
+        ("main.st", "PROGRAM Main VAR n : INT; END_VAR n := Line.speed; END_PROGRAM\n"),
+        ("Line.st", "VAR_GLOBAL speed : INT := 7; END_VAR\n"),
+    ];
+    let folder = Folder::with("beside_the_text", &files);
+    let said = folder.staunch("convert main.st Line.st -o all.st --dialect codesys").err(1);
+    has(
+        &said,
+        &[
+            "the program is not the same as one text",
+            "in line 2 of that text: `Line` is not declared",
+            "nothing was written",
+        ],
+    );
+    assert!(!folder.0.join("all.st").exists());
+}
+
+#[test]
 fn a_project_of_twincat_runs_as_it_lies() {
     let folder = project("twincat");
     for source in ["Line.plcproj", "."] {

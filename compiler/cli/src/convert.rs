@@ -1,0 +1,36 @@
+//! Any system's files as one file of Structured Text.
+
+use crate::args::Convert;
+use crate::session::Session;
+use crate::{REJECTED, apart, input, output};
+use staunch_frontend::{Compilation, Severity, Sources};
+
+/// Writes the text of all files, if it is the program that they are.
+pub fn convert(session: &Session, args: &Convert) -> Result<u8, String> {
+    let Some(program) = session.program() else { return Ok(REJECTED) };
+    let path = &args.output;
+    apart::output(session, path)?;
+    output::check(path)?;
+    let converted = session.sources.as_one_file(&input::shown(path));
+    let compilation = session.compile_to_build(&converted)?;
+    let is_same = compilation.program.as_ref().is_some_and(|it| it.to_string() == program.to_string());
+    if !is_same {
+        output::tell(refusal(&compilation, &converted));
+        return Ok(REJECTED);
+    }
+    output::write(path, converted.files()[0].text.as_bytes())?;
+    session.say("Converted", format_args!("{} to {}", session.first.display(), path.display()));
+    Ok(0)
+}
+
+fn refusal(compilation: &Compilation, converted: &Sources) -> String {
+    let mut text =
+        "error: the program is not the same as one text: what its files say beside their text is a part of it"
+            .to_owned();
+    let first = compilation.diagnostics.iter().find(|it| it.severity == Severity::Error);
+    if let Some(it) = first {
+        let line = converted.get(it.span.file).line(it.span.start);
+        text += &format!("\n  in line {line} of that text: {}", it.message);
+    }
+    text + "\n  nothing was written"
+}

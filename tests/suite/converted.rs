@@ -1,0 +1,38 @@
+//! The files of a case as one file of Structured Text are the same program.
+
+use staunch_tests::case::{self, Case};
+use staunch_tests::cases;
+
+/// Cases whose files say more than their text: a project's device, tasks, definitions, libraries.
+const MORE_THAN_TEXT: [&str; 0] = [];
+
+#[test]
+fn a_case_as_one_file_is_the_same_program() {
+    let (cases, _) = case::discover(&cases());
+    let (mut same, mut others) = (0, Vec::new());
+    for case in &cases {
+        match is_same(case) {
+            Some(Ok(())) => same += 1,
+            Some(Err(why)) if !MORE_THAN_TEXT.contains(&case.name.as_str()) => {
+                others.push(format!("{}: {why}", case.name))
+            }
+            Some(Err(_)) | None => {}
+        }
+    }
+    assert!(others.is_empty(), "{} are others:\n{}", others.len(), others.join("\n"));
+    assert!(same > 1000, "{same}");
+}
+
+/// `None` where there is no program.
+fn is_same(case: &Case) -> Option<Result<(), String>> {
+    let (sources, compilation) = case.compile();
+    let program = compilation.program?;
+    let converted = staunch_frontend::compile(&sources.as_one_file("all.st"), &case.settings().options);
+    let Some(other) = converted.program else {
+        let first = converted.diagnostics.iter().find(|it| it.severity == staunch_frontend::Severity::Error);
+        return Some(Err(first.map_or_else(String::new, |it| it.message.clone())));
+    };
+    let (program, other) = (program.to_string(), other.to_string());
+    let differ = || program.lines().zip(other.lines()).find(|(a, b)| a != b);
+    Some(if program == other { Ok(()) } else { Err(format!("{:?}", differ())) })
+}
