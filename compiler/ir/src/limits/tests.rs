@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::fixture::{AT, add, int, load, name, temp, wide};
-use crate::{For, Place, Step, StringType, Taking};
+use crate::{For, Op, Place, Step, StringType, Taking};
 
 fn len(place: Place) -> Expr {
     Expr::new(Type::INT, ExprKind::ApplyText(TextOp::Len, vec![load(place)]), AT)

@@ -2,7 +2,7 @@
 
 use super::look;
 use super::sighting::Sighting;
-use super::trace::{Group, Trace};
+use super::trace::Trace;
 use super::world::World;
 use crate::compare::pair::{Pair, Step};
 
