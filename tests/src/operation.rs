@@ -117,6 +117,7 @@ pub fn program(tasks: &[Task]) -> Program {
         enums: Vec::new(),
         bounds: Vec::new(),
         milliseconds: None,
+        remotes: Vec::new(),
         arrays: Vec::new(),
         interfaces: Vec::new(),
         references: Vec::new(),

@@ -1,6 +1,10 @@
 //! `staunch.toml`: the settings of the command and of build scripts, for the folder it is in and those
 //! below.
 
+mod modbus;
+
+pub use modbus::Modbus;
+
 use staunch_frontend::{Dialect, Level, Levels, nearest};
 use std::path::{Path, PathBuf};
 
@@ -32,6 +36,8 @@ pub struct Project {
     pub color: Option<String>,
     pub quiet: bool,
     pub verbose: bool,
+    /// `[[modbus]]`
+    pub modbus: Vec<Modbus>,
     text: String,
 }
 
@@ -83,6 +89,15 @@ impl Project {
         line_of(&self.text, key, value).map_or_else(|| self.file(), |line| format!("{}:{line}", self.file()))
     }
 
+    /// The file and the line of a setting in the table of `[[modbus]]` with this number, from 0.
+    pub fn place_in_modbus(&self, number: usize, key: &str) -> String {
+        let tables = self.text.match_indices("[[modbus]]").map(|it| it.0);
+        let start = tables.take(number + 1).last().unwrap_or(0);
+        let before = self.text[..start].lines().count();
+        let line = line_of(&self.text[start..], key, None).unwrap_or(1);
+        format!("{}:{}", self.file(), before + line)
+    }
+
     /// A path of the file, as seen from `from`, with strokes as on every machine.
     pub fn seen_from(&self, from: &Path, path: &Path) -> PathBuf {
         relative(&self.folder.join(path), from)
@@ -132,7 +147,7 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 20] = [
+const SETTINGS: [&str; 21] = [
     "dialect",
     "files",
     "libraries",
@@ -153,6 +168,7 @@ const SETTINGS: [&str; 20] = [
     "color",
     "quiet",
     "verbose",
+    "modbus",
 ];
 
 fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), String> {
@@ -179,6 +195,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "color" => project.color = Some(choice(key, value, &["auto", "always", "never"])?),
         "quiet" => project.quiet = flag(key, value)?,
         "verbose" => project.verbose = flag(key, value)?,
+        "modbus" => project.modbus = modbus::read(value)?,
         _ => {
             return Err(match nearest(key, SETTINGS.into_iter()) {
                 Some(near) => format!("there is no setting `{key}`; did you mean `{near}`?"),

@@ -5,6 +5,7 @@ mod args;
 
 mod input;
 mod other_dialects;
+mod remotes;
 mod session;
 
 mod cache;

@@ -46,6 +46,9 @@ pub fn cycle(session: &Session, asked: Option<&str>) -> Result<Option<i64>, Stri
 }
 
 fn options(session: &Session, args: &Run) -> Result<Options, String> {
+    if args.io_stop.is_some() && args.io.is_empty() && session.project.modbus.is_empty() {
+        return Err("--io-stop needs --io, what the outputs are connected with".to_owned());
+    }
     Ok(Options {
         // The program holds just the instances that run.
         program: None,

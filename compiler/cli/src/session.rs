@@ -2,7 +2,7 @@
 
 use crate::args::{Color, Common, Files, MessageFormat};
 use crate::other_dialects::{Advice, advice};
-use crate::{REJECTED, input, output};
+use crate::{REJECTED, input, output, remotes};
 use staunch_build::{Project, listing};
 use staunch_frontend::{
     Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Sources, Span,
@@ -39,7 +39,7 @@ pub struct Session {
 impl Session {
     /// Reads and compiles the sources, and prints what there is to say about them.
     pub fn start(common: &Common, files: &Files) -> Result<Self, String> {
-        Self::begin(common, files, "--dialect", staunch_frontend::compile).map(|(session, _)| session)
+        Self::begin(common, files, "--dialect", staunch_frontend::compile).and_then(|it| it.0.connected())
     }
 
     /// As [`start`](Self::start), for a program that moves from this system.
@@ -52,7 +52,13 @@ impl Session {
         let compile = |sources: &Sources, options: &Options| {
             staunch_frontend::compile(sources, &Options { is_run: false, ..options.clone() })
         };
-        Self::begin(common, files, "--dialect", compile).map(|(session, _)| session)
+        Self::begin(common, files, "--dialect", compile).and_then(|it| it.0.connected())
+    }
+
+    /// With the servers of the project.
+    fn connected(mut self) -> Result<Self, String> {
+        let connected = self.program.as_mut().map(|it| remotes::connect(&self.project, it));
+        connected.unwrap_or(Ok(())).map(|()| self)
     }
 
     /// As [`start`](Self::start), for the unit tests in the sources.
@@ -92,6 +98,10 @@ impl Session {
         let (session, errors) = Self::begin(common, files, "--dialect", check)?;
         if errors > 0 {
             return Ok(REJECTED);
+        }
+        if !session.project.modbus.is_empty() {
+            let program = session.compile_to_build(&session.sources)?.program;
+            program.map_or(Ok(()), |mut it| remotes::connect(&session.project, &mut it))?;
         }
         let others = session.sources.files().len() - 1;
         match others > 0 && !listing::is_list(&session.first) {

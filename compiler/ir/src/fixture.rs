@@ -57,6 +57,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         enums: vec![color()],
         bounds: vec![(-3, 7), (1, 9)],
         milliseconds: None,
+        remotes: Vec::new(),
         arrays,
         interfaces: Vec::new(),
         references: Vec::new(),

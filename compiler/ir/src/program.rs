@@ -29,6 +29,8 @@ pub struct Program {
     pub bounds: Vec<(i128, i128)>,
     /// The least and the greatest TIME in milliseconds, where a TIME is a number of those; any nanoseconds without.
     pub milliseconds: Option<(i64, i64)>,
+    /// Lines of the map of a project: the servers that a host reads inputs from, and writes outputs to.
+    pub remotes: Vec<String>,
     pub arrays: Vec<Array>,
     /// The names of the INTERFACEs.
     pub interfaces: Vec<String>,

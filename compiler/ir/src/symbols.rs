@@ -33,6 +33,8 @@ pub const VERSION: u32 = 1;
 /// field      name  type  offset  section  flags  address  low..high
 /// path       field of the globals  its name in full, of one in a NAMESPACE or a list
 /// bound      type  offset in the machine  address of the input that it is copied from before each scan
+/// remote     name  address and port  unit  period in ns  timeout in ns  on-loss  word-order, or -; then its registers
+/// register   variable  place at the server, `input-register 3`
 /// object     offset in the machine  size
 /// globals    struct:id  offset
 /// instance   number  name  program  struct:id  offset  interval in ns  priority
@@ -98,7 +100,8 @@ impl Map<'_> {
         }
         writeln!(self.text, "globals\tstruct:{}\t{}", self.program.globals.0, machine.globals)?;
         self.bound()?;
-        self.instances()
+        self.instances()?;
+        self.program.remotes.iter().try_for_each(|it| writeln!(self.text, "{it}"))
     }
 
     /// What a VAR_CONFIG binds to inputs.

@@ -98,6 +98,7 @@ impl Maker {
             files: vec![SourceFile { path: "random.st".to_owned(), system: staunch_runtime::Family::Iec }],
             bounds: vec![LIMITS],
             milliseconds: None,
+            remotes: Vec::new(),
             enums: vec![Enum {
                 name: "Color".to_owned(),
                 doc: None,

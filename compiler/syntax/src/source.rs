@@ -463,12 +463,17 @@ impl Sources {
     pub fn as_one_file(&self, path: &str) -> Self {
         let (own, others): (Vec<_>, Vec<_>) = self.files.iter().partition(|it| !it.is_of_library());
         let mut text = String::new();
+        let mut dialects = Vec::new();
         for file in &own {
+            // The files of a system name its dialect each in their first line; one file does it once.
+            let first = file.text.lines().next().filter(|it| it.starts_with("{dialect "));
+            let is_said = first.is_some_and(|it| dialects.contains(&it));
+            dialects.extend(first);
             if own.len() > 1 {
                 let gap = if text.is_empty() { "" } else { "\n" };
                 text += &format!("{gap}// {}\n", file.path);
             }
-            text += &file.text;
+            text += if is_said { file.text.split_once('\n').map_or("", |it| it.1) } else { &file.text };
             if !text.ends_with('\n') {
                 text.push('\n');
             }

@@ -48,8 +48,8 @@ const FLAGS: [(&str, &str, &str); 26] = [
     ("--help", "", "Print this"),
 ];
 
-/// Reads the arguments, of which the first is the executable's name.
-pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wish, String> {
+/// Reads the arguments, of which the first is the executable's name. `is_connected` says that a project connects inputs and outputs.
+pub fn parse_options(mut arguments: impl Iterator<Item = OsString>, is_connected: bool) -> Result<Wish, String> {
     let name = arguments.next().unwrap_or_default();
     let (mut options, mut bench, mut at_end) = (Options::default(), false, None);
     while let Some(argument) = arguments.next() {
@@ -98,7 +98,7 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>) -> Result<Wi
     if options.retain_within.is_some() && options.retain.is_none() {
         return Err("--retain-within needs --retain, the file to keep them in".to_owned());
     }
-    if at_end.is_some() && options.io.connections.is_empty() {
+    if at_end.is_some() && options.io.connections.is_empty() && !is_connected {
         return Err("--io-stop needs --io, what the outputs are connected with".to_owned());
     }
     options.io.at_end = at_end.unwrap_or_default();
@@ -184,6 +184,7 @@ mod tests {
     fn parse(text: &str) -> Result<Wish, String> {
         parse_options(
             std::iter::once("x").chain(text.split_whitespace()).map(OsString::from).collect::<Vec<_>>().into_iter(),
+            false,
         )
     }
 

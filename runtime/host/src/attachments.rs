@@ -6,6 +6,7 @@
 //! Whoever talks to a network does so in a thread of its own (`exchange` has what the two threads share).
 
 mod attachment;
+mod client;
 pub(crate) mod emergency;
 mod exchange;
 mod image;
@@ -23,11 +24,13 @@ mod mapping;
 mod mapping;
 
 pub(crate) use attachment::Ended;
+pub use client::remote::{Mistake, OnLoss, Remote, WordOrder};
 pub use options::{AtEnd, Connection, Io};
 
 use crate::map::Map;
 use crate::{Error, Machine};
 use attachment::Attachment;
+use client::Client;
 use points::Points;
 use server::Modbus;
 use shared_memory::SharedMemory;
@@ -56,11 +59,16 @@ impl Attachments {
                 crate::error::tell(format_args!("note: {connection} has no place for {names}"));
             }
         }
+        for remote in &map.remotes {
+            all.push(Box::new(Client::start(remote, map, &points, io.at_end, quiet)?));
+        }
         Ok(Self(all))
     }
 
-    pub fn before(&mut self, machine: &mut dyn Machine) {
+    /// An error where something is lost without which the run is not to go on.
+    pub fn before(&mut self, machine: &mut dyn Machine) -> Result<(), Error> {
         self.0.iter_mut().for_each(|it| it.before(machine));
+        self.0.iter().find_map(|it| it.lost()).map_or(Ok(()), Err)
     }
 
     pub fn after(&mut self, state: &[u8]) {

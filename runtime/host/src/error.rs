@@ -25,6 +25,8 @@ pub enum Error {
     Fault { fault: Fault, scan: u64, instance: String, path: String },
     /// A scan took longer than its period, where that ends a run in real time. Times in nanoseconds.
     Overrun { scan: u64, instance: String, took: Time, period: Time },
+    /// A server of inputs and outputs does not answer, where that ends a run in real time.
+    Connection { name: String, trouble: String },
 }
 
 impl Error {
@@ -53,6 +55,10 @@ impl Error {
                  \"scan\":{scan},\"program\":{}}}",
                 quote(instance)
             ),
+            Self::Connection { name, .. } => format!(
+                "{{\"reason\":\"fault\",\"message\":{message},\"kind\":\"connection\",\"connection\":{}}}",
+                quote(name)
+            ),
             Self::Usage(_)
             | Self::Stimulus { .. }
             | Self::Retain { .. }
@@ -66,7 +72,7 @@ impl Error {
     pub const fn exit_code(&self) -> u8 {
         match self {
             Self::ClosedPipe => 0,
-            Self::Fault { .. } | Self::Overrun { .. } => 3,
+            Self::Fault { .. } | Self::Overrun { .. } | Self::Connection { .. } => 3,
             Self::Map { .. } => 101,
             Self::Usage(_) | Self::Stimulus { .. } | Self::Retain { .. } | Self::File { .. } => 2,
         }
@@ -88,6 +94,7 @@ impl fmt::Display for Error {
                 let (took, period) = (rounded(*took), rounded(*period));
                 write!(f, "overrun: a scan took {took} of {period} (scan {scan}, program {instance}, --overrun fault)")
             }
+            Self::Connection { name, trouble } => write!(f, "connection: {name}: {trouble} (on-loss = \"fault\")"),
             Self::Fault { fault, scan, instance, path } => {
                 let (line, column) = (fault.at.line, fault.at.column);
                 write!(f, "{path}:{line}:{column}: fault: {} (scan {scan}, program {instance})", fault.kind)

@@ -19,7 +19,10 @@ pub fn main(code: Code) -> ExitCode {
 /// C `main`.
 pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
     signal::ignore_closed_pipes();
-    let started = code.machine().and_then(|it| Ok((it, parse_options(arguments).map_err(Error::Usage)?)));
+    let started = code.machine().and_then(|(map, machine)| {
+        let wish = parse_options(arguments, !map.remotes.is_empty()).map_err(Error::Usage)?;
+        Ok(((map, machine), wish))
+    });
     let ((map, mut machine), wish) = match started {
         Ok(started) => started,
         Err(error) => return failed(&Options::default(), &error),

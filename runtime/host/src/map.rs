@@ -1,6 +1,7 @@
 //! The map: which variable lies where. The compiler writes it as text, one record a line.
 
 use crate::Error;
+use crate::attachments::Remote;
 use staunch_runtime::{Elementary, Repr, StringType};
 use std::collections::BTreeMap;
 
@@ -31,6 +32,8 @@ pub struct Map {
     pub(crate) global_paths: Vec<(String, String)>,
     /// What takes its value from an input before each scan: the type, the offset and the input's address.
     pub(crate) bound: Vec<(Type, usize, String)>,
+    /// What a run in real time reads from and writes to.
+    pub(crate) remotes: Vec<Remote>,
     pub instances: Vec<Instance>,
 }
 
@@ -208,6 +211,18 @@ impl Map {
             "bound" => {
                 let (ty, offset) = (record.ty()?, record.number()?);
                 self.bound.push((ty, offset, record.text()?.to_owned()));
+                Ok(())
+            }
+            "remote" => {
+                let remote =
+                    Remote::parse(&mut record.cells).ok_or_else(|| record.error("a server that does not read"))?;
+                self.remotes.push(remote);
+                Ok(())
+            }
+            "register" => {
+                let (name, place) = (record.text()?.to_owned(), record.text()?.to_owned());
+                let remote = self.remotes.last_mut().ok_or_else(|| record.error("a register of no server"))?;
+                remote.variables.push((name, place));
                 Ok(())
             }
             "globals" => {

@@ -258,7 +258,7 @@ impl Runner<'_> {
         let Some(turn) = self.schedule.pick(now, placed, real.catches_up()) else { return Ok(None) };
         self.stimulate(number, now)?;
         if let Some(attachments) = &mut self.attachments {
-            attachments.before(self.machine);
+            attachments.before(self.machine)?;
             // An input of the stimulus is not the world's.
             self.hold();
         }
@@ -287,7 +287,7 @@ impl Runner<'_> {
     }
 
     fn attach(&mut self) -> Result<(), Error> {
-        if !self.options.io.connections.is_empty() {
+        if !self.options.io.connections.is_empty() || !self.map.remotes.is_empty() {
             let (state, quiet) = (self.machine.state(), self.options.quiet);
             self.attachments = Some(Attachments::start(self.map, &self.options.io, state, quiet)?);
         }
@@ -296,7 +296,7 @@ impl Runner<'_> {
 
     /// Outputs take their safe values.
     fn detach(&mut self, ran: &Result<(), Error>) {
-        let faulted = matches!(ran, Err(Error::Fault { .. } | Error::Overrun { .. }));
+        let faulted = matches!(ran, Err(Error::Fault { .. } | Error::Overrun { .. } | Error::Connection { .. }));
         let ended = if faulted { Ended::Fault } else { Ended::Well };
         self.attachments.iter_mut().for_each(|it| it.end(ended));
     }
@@ -469,7 +469,9 @@ impl Runner<'_> {
     fn finish(&mut self, subject: &Subject<'_>, ran: &Result<(), Error>) -> Result<(), Error> {
         let text = ran.as_ref().err().map(Error::to_string);
         let ending = match (ran, &text) {
-            (Err(Error::Fault { .. } | Error::Overrun { .. }), Some(text)) => Ending::Fault(text),
+            (Err(Error::Fault { .. } | Error::Overrun { .. } | Error::Connection { .. }), Some(text)) => {
+                Ending::Fault(text)
+            }
             (Err(_), _) => Ending::Early,
             (Ok(()), _) => Ending::Well,
         };

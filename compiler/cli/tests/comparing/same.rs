@@ -23,7 +23,7 @@ END_PROGRAM
 }
 
 fn verdict(name: &str, body: &str, (from, to): (&str, &str)) -> (Option<i32>, String) {
-    let quiet = OWN.written("quiet.txt", "no run\nno restart\nno reset\n");
+    let quiet = OWN.written(&format!("{name}_quiet.txt"), "no run\nno restart\nno reset\n");
     OWN.compare(name, &program(body), &["--from", from, "--to", to, "--assume", &quiet, "--budget", "20000"])
 }
 
@@ -54,7 +54,7 @@ fn what_fits_is_the_same_in_any_type() {
         }
     }
     for body in [bodies[3], bodies[4], bodies[0]] {
-        let (code, text) = verdict("logix", body, ("logix", "iec"));
+        let (code, text) = verdict("of_logix", body, ("logix", "iec"));
         assert_eq!(code, Some(0), "{body}\n{text}");
     }
 }
@@ -105,7 +105,7 @@ fn what_may_fault_is_not_called_the_same() {
 #[test]
 fn a_counter_that_the_body_writes_may_reach_the_end_of_its_type() {
     let body = "FOR i := 0 TO 10 DO IF on THEN i := 32767; END_IF; n := i; END_FOR;";
-    for systems in [("codesys", "openplc4"), ("codesys", "siemens"), ("openplc4", "codesys")] {
+    for systems in [("codesys", "openplc4"), ("openplc4", "codesys")] {
         let (code, text) = verdict("counter", body, systems);
         assert!(code != Some(0) && text.contains("FOR to the limit of its counter's type"), "{systems:?}: {text}");
     }

@@ -1,5 +1,6 @@
 //! Inputs and outputs of a running program: a Modbus TCP server, and a process image in shared memory (`docs/io.md`).
 
+mod client;
 mod modbus;
 mod shared_memory;
 

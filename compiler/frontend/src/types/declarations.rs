@@ -700,6 +700,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         enums: Vec::new(),
         bounds: Vec::new(),
         milliseconds: None,
+        remotes: Vec::new(),
         arrays: Vec::new(),
         interfaces: Vec::new(),
         references: Vec::new(),

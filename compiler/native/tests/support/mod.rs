@@ -83,6 +83,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         enums: Vec::new(),
         bounds: Vec::new(),
         milliseconds: None,
+        remotes: Vec::new(),
         arrays,
         interfaces: Vec::new(),
         references: Vec::new(),

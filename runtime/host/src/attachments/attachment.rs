@@ -1,6 +1,6 @@
 //! What all attachments are.
 
-use crate::Machine;
+use crate::{Error, Machine};
 
 /// How a run has ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,10 @@ pub(crate) trait Attachment {
     fn before(&mut self, machine: &mut dyn Machine);
     /// Shows the outputs of a whole scan outside.
     fn after(&mut self, state: &[u8]);
+    /// What the run is not to go on without is lost.
+    fn lost(&self) -> Option<Error> {
+        None
+    }
     /// The run is over: outputs take their safe values.
     fn end(&mut self, ended: Ended);
 }

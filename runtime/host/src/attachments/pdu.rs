@@ -2,24 +2,26 @@
 
 use super::registers::{Registers, Table};
 
-const READ_COILS: u8 = 1;
-const READ_DISCRETE_INPUTS: u8 = 2;
-const READ_HOLDING_REGISTERS: u8 = 3;
-const READ_INPUT_REGISTERS: u8 = 4;
-const WRITE_COIL: u8 = 5;
-const WRITE_REGISTER: u8 = 6;
-const WRITE_COILS: u8 = 15;
-const WRITE_REGISTERS: u8 = 16;
-const WRITE_AND_READ_REGISTERS: u8 = 23;
+/// The codes of functions.
+pub(super) mod function {
+    pub const READ_COILS: u8 = 1;
+    pub const READ_DISCRETE_INPUTS: u8 = 2;
+    pub const READ_HOLDING_REGISTERS: u8 = 3;
+    pub const READ_INPUT_REGISTERS: u8 = 4;
+    pub const WRITE_COIL: u8 = 5;
+    pub const WRITE_REGISTER: u8 = 6;
+    pub const WRITE_COILS: u8 = 15;
+    pub const WRITE_REGISTERS: u8 = 16;
+    pub const WRITE_AND_READ_REGISTERS: u8 = 23;
+    /// The highest bit of the function of an answer that says what is wrong.
+    pub const WRONG: u8 = 0x80;
+}
 
-const MOST_BITS_READ: usize = 2000;
-const MOST_BITS_WRITTEN: usize = 1968;
-const MOST_READ: usize = 125;
-const MOST_WRITTEN: usize = 123;
+pub(super) const MOST_BITS_READ: usize = 2000;
+pub(super) const MOST_BITS_WRITTEN: usize = 1968;
+pub(super) const MOST_READ: usize = 125;
+pub(super) const MOST_WRITTEN: usize = 123;
 const MOST_WRITTEN_AND_READ: usize = 121;
-
-/// The highest bit of the function of an answer that says what is wrong.
-const WRONG: u8 = 0x80;
 
 /// What is wrong with a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,21 +38,21 @@ pub(super) fn answer(request: &[u8], registers: &mut Registers, answer: &mut Vec
     answer.push(function);
     if let Err(exception) = carry_out(function, rest, registers, answer) {
         answer.truncate(start);
-        answer.extend([function | WRONG, exception as u8]);
+        answer.extend([function | function::WRONG, exception as u8]);
     }
 }
 
 fn carry_out(function: u8, rest: &[u8], registers: &mut Registers, answer: &mut Vec<u8>) -> Result<(), Exception> {
     match function {
-        READ_COILS => read_bits(Table::Coils, rest, registers, answer),
-        READ_DISCRETE_INPUTS => read_bits(Table::Discrete, rest, registers, answer),
-        READ_HOLDING_REGISTERS => read_registers(Table::Holding, rest, registers, answer),
-        READ_INPUT_REGISTERS => read_registers(Table::Input, rest, registers, answer),
-        WRITE_COIL => write_coil(rest, registers, answer),
-        WRITE_REGISTER => write_register(rest, registers, answer),
-        WRITE_COILS => write_coils(rest, registers, answer),
-        WRITE_REGISTERS => write_registers(rest, registers, answer),
-        WRITE_AND_READ_REGISTERS => write_and_read(rest, registers, answer),
+        function::READ_COILS => read_bits(Table::Coils, rest, registers, answer),
+        function::READ_DISCRETE_INPUTS => read_bits(Table::Discrete, rest, registers, answer),
+        function::READ_HOLDING_REGISTERS => read_registers(Table::Holding, rest, registers, answer),
+        function::READ_INPUT_REGISTERS => read_registers(Table::Input, rest, registers, answer),
+        function::WRITE_COIL => write_coil(rest, registers, answer),
+        function::WRITE_REGISTER => write_register(rest, registers, answer),
+        function::WRITE_COILS => write_coils(rest, registers, answer),
+        function::WRITE_REGISTERS => write_registers(rest, registers, answer),
+        function::WRITE_AND_READ_REGISTERS => write_and_read(rest, registers, answer),
         _ => Err(Exception::Function),
     }
 }

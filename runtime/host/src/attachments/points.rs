@@ -60,6 +60,16 @@ pub(super) struct Point {
 }
 
 impl Point {
+    /// In the state.
+    pub fn offset(&self) -> usize {
+        self.offset
+    }
+
+    /// The one bit of the byte there that it is, if it is one.
+    pub fn bit(&self) -> Option<u8> {
+        self.bit
+    }
+
     /// Its bits, the others being 0.
     pub fn read(&self, state: &[u8]) -> u64 {
         let size = self.width.size();

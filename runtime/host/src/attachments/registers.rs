@@ -7,7 +7,7 @@ const MEMORY_WORDS: usize = NUMBERS;
 const MEMORY_DOUBLES: usize = 2 * NUMBERS;
 const MEMORY_LONGS: usize = 4 * NUMBERS;
 const HOLDING: usize = 8 * NUMBERS;
-const REGISTER_BITS: usize = 16;
+pub(super) const REGISTER_BITS: usize = 16;
 
 /// One of the four tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +19,21 @@ pub(super) enum Table {
 }
 
 impl Table {
+    /// Its numbers are single bits.
+    pub fn is_bits(self) -> bool {
+        matches!(self, Self::Coils | Self::Discrete)
+    }
+
+    /// One of its numbers, as people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Coils => "coil",
+            Self::Discrete => "discrete-input",
+            Self::Input => "input-register",
+            Self::Holding => "holding-register",
+        }
+    }
+
     pub fn size(self) -> usize {
         match self {
             Self::Coils | Self::Discrete => BITS,
