@@ -1,5 +1,6 @@
 //! The files of a case as one file of Structured Text are the same program.
 
+use staunch_ir::print_without_places;
 use staunch_tests::case::{self, Case};
 use staunch_tests::cases;
 
@@ -32,7 +33,7 @@ fn is_same(case: &Case) -> Option<Result<(), String>> {
         let first = converted.diagnostics.iter().find(|it| it.severity == staunch_frontend::Severity::Error);
         return Some(Err(first.map_or_else(String::new, |it| it.message.clone())));
     };
-    let (program, other) = (program.to_string(), other.to_string());
+    let (program, other) = (print_without_places(&program), print_without_places(&other));
     let differ = || program.lines().zip(other.lines()).find(|(a, b)| a != b);
     Some(if program == other { Ok(()) } else { Err(format!("{:?}", differ())) })
 }

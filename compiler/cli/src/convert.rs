@@ -4,6 +4,8 @@ use crate::args::Convert;
 use crate::session::Session;
 use crate::{REJECTED, apart, input, output};
 use staunch_frontend::{Compilation, Severity, Sources};
+use staunch_ir::{Program, print_without_places};
+use std::collections::HashSet;
 
 /// Writes the text of all files, if it is the program that they are.
 pub fn convert(session: &Session, args: &Convert) -> Result<u8, String> {
@@ -13,7 +15,7 @@ pub fn convert(session: &Session, args: &Convert) -> Result<u8, String> {
     output::check(path)?;
     let converted = session.sources.as_one_file(&input::shown(path));
     let compilation = session.compile_to_build(&converted)?;
-    let is_same = compilation.program.as_ref().is_some_and(|it| it.to_string() == program.to_string());
+    let is_same = compilation.program.as_ref().is_some_and(|it| is_same(it, program));
     if !is_same {
         output::tell(refusal(&compilation, &converted));
         return Ok(REJECTED);
@@ -21,6 +23,12 @@ pub fn convert(session: &Session, args: &Convert) -> Result<u8, String> {
     output::write(path, converted.files()[0].text.as_bytes())?;
     session.say("Converted", format_args!("{} to {}", session.first.display(), path.display()));
     Ok(0)
+}
+
+/// Whether both do the same, by the same systems' rules, wherever their text is.
+fn is_same(a: &Program, b: &Program) -> bool {
+    let systems = |it: &Program| it.files.iter().map(|it| it.system).collect::<HashSet<_>>();
+    systems(a) == systems(b) && print_without_places(a) == print_without_places(b)
 }
 
 fn refusal(compilation: &Compilation, converted: &Sources) -> String {

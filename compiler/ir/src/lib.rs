@@ -66,7 +66,7 @@ pub use external::{External, ExternalCall, ExternalParam};
 pub use fold::fold;
 pub use op::{Op, TextOp, apply, apply_text};
 pub use place::{Place, Projection, Root};
-pub use print::print;
+pub use print::{print, print_without_places};
 pub use program::{
     Address, Area, Bound, Class, ClassId, ClassKind, Field, FieldId, HELD_PROGRAM, Instance, Local, LocalId, Mode,
     Module, Param, ParamId, Program, Reach, Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable,

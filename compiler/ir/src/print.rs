@@ -18,7 +18,16 @@ impl Display for Program {
 
 /// The whole program.
 pub fn print(program: &Program) -> String {
-    let mut printer = Printer { program, text: String::new(), depth: 0 };
+    printed(program, true)
+}
+
+/// The same without files and places in them: what programs have in common whose text is in other files.
+pub fn print_without_places(program: &Program) -> String {
+    printed(program, false)
+}
+
+fn printed(program: &Program, has_places: bool) -> String {
+    let mut printer = Printer { program, text: String::new(), depth: 0, has_places };
     printer.program().expect("writing to a String does not fail");
     printer.text
 }
@@ -27,6 +36,7 @@ struct Printer<'p> {
     program: &'p Program,
     text: String,
     depth: usize,
+    has_places: bool,
 }
 
 impl Printer<'_> {
@@ -39,7 +49,8 @@ impl Printer<'_> {
 
     fn program(&mut self) -> fmt::Result {
         let program = self.program;
-        for file in &program.files {
+        let files = if self.has_places { program.files.as_slice() } else { &[] };
+        for file in files {
             self.line(format_args!("file {}", file.path))?;
         }
         for enumeration in &program.enums {

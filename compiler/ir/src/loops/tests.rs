@@ -99,9 +99,9 @@ fn ranges_are_as_narrow_as_they_can_be() {
     assert_eq!(range(-3, 4, Op::Add, beside()), (-5, 7));
     assert_eq!(range(-3, 4, Op::Sub, beside()), (-6, 6));
     assert_eq!(range(-3, 4, Op::Mul, beside()), (-9, 12));
-    assert_eq!(range(-3, 4, Op::Mod, int(6)), (-5, 5));
-    assert_eq!((range(0, 4, Op::Mod, int(6)), range(-4, 0, Op::Mod, int(6))), ((0, 5), (-5, 0)));
-    assert_eq!((range(-1, 4, Op::Mod, int(6)), range(-4, 1, Op::Mod, int(6))), ((-5, 5), (-5, 5)));
+    assert_eq!((range(-3, 4, Op::Mod, int(6)), range(-30, 40, Op::Mod, int(6))), ((-3, 4), (-5, 5)));
+    assert_eq!((range(0, 9, Op::Mod, int(6)), range(-9, 0, Op::Mod, int(6))), ((0, 5), (-5, 0)));
+    assert_eq!((range(-1, 9, Op::Mod, int(6)), range(-9, 1, Op::Mod, int(6))), ((-1, 5), (-5, 1)));
     assert_eq!((range(-3, 4, Op::And, int(6)), range(-3, 4, Op::And, int(0))), ((0, 6), (0, 0)));
     let (least, most) = (i128::from(i16::MIN), i128::from(i16::MAX));
     assert_eq!(range(0, i16::MAX - 1, Op::Add, int(1)), (1, most));

@@ -18,7 +18,10 @@ impl Printer<'_> {
     fn statement(&mut self, routine: &Routine, statement: &Statement) -> fmt::Result {
         let head = self.head(routine, &statement.kind);
         let at = statement.at;
-        self.line(format_args!("{head} @{}:{}", at.line, at.column))?;
+        match self.has_places {
+            true => self.line(format_args!("{head} @{}:{}", at.line, at.column))?,
+            false => self.line(format_args!("{head}"))?,
+        }
         match &statement.kind {
             StatementKind::If { then, otherwise, .. } => {
                 self.block(routine, then)?;
