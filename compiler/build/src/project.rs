@@ -45,7 +45,8 @@ impl Project {
     /// The project file of `start` or of the nearest folder above it.
     pub fn find(start: &Path) -> Result<Option<Self>, String> {
         let start = start.canonicalize().unwrap_or_else(|_| start.to_owned());
-        let found = start.ancestors().map(|folder| folder.join("staunch.toml")).find(|it| it.is_file());
+        // Whatever has that name: one that cannot be read is no reason to compile by other settings.
+        let found = start.ancestors().map(|it| it.join("staunch.toml")).find(|it| it.symlink_metadata().is_ok());
         found.map(|path| read(&path)).transpose()
     }
 
@@ -124,6 +125,10 @@ fn relative(path: &Path, from: &Path) -> PathBuf {
 
 fn read(path: &Path) -> Result<Project, String> {
     let fail = |what: String| format!("{}: {what}", shown(path));
+    let metadata = std::fs::metadata(path).map_err(|it| fail(it.to_string()))?;
+    if !metadata.is_file() {
+        return Err(fail("this is a folder, a pipe or a device, and not a file".to_owned()));
+    }
     let text = std::fs::read_to_string(path).map_err(|it| fail(it.to_string()))?;
     let table: toml::Table = text.parse().map_err(|it: toml::de::Error| fail(it.to_string()))?;
     let folder = path.parent().unwrap_or(Path::new(".")).to_owned();

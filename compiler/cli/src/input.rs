@@ -86,7 +86,8 @@ fn collect(
     for entry in inside {
         let hidden = entry.file_name().is_some_and(|it| it.to_string_lossy().starts_with('.'));
         if !hidden && (entry.is_dir() || listing::is_source(&entry)) {
-            if fs::metadata(&entry).is_ok_and(|it| !it.is_file() && !it.is_dir()) {
+            let metadata = fs::metadata(&entry).map_err(|it| format!("{}: {it}", shown(&entry)))?;
+            if !metadata.is_file() && !metadata.is_dir() {
                 // A pipe that nobody writes would be waited for; one that is named is.
                 return Err(format!("{}: this is not a file, but a pipe or a device", shown(&entry)));
             }

@@ -70,6 +70,10 @@ impl<'p> Interpreted<'p> {
         let map = map(program)?;
         Ok((Self { interpreter: Interpreter::new(program), domain: Domain::of(&map) }, map))
     }
+
+    pub fn interpreter(&mut self) -> &mut Interpreter<'p> {
+        &mut self.interpreter
+    }
 }
 
 impl Machine for Interpreted<'_> {

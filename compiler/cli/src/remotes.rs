@@ -2,7 +2,7 @@
 //! variables, and given to its map.
 
 use staunch_build::{Modbus, Project};
-use staunch_host::{Map, OnLoss, Remote, WordOrder, parse_duration};
+use staunch_host::{Map, OnLoss, Remote, WordOrder, check_remotes, parse_duration};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::time::Duration;
@@ -22,7 +22,7 @@ pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
     let remotes: Vec<Remote> = project.modbus.iter().enumerate().map(read).collect::<Result<_, _>>().map_err(place)?;
     let map = staunch_ir::symbols::map_text(program, &Layout::new(program));
     let map = Map::parse(&map).map_err(|it| it.to_string())?;
-    Remote::check(&remotes, &map).map_err(|(number, mistake)| match mistake.variable {
+    check_remotes(&remotes, &map).map_err(|(number, mistake)| match mistake.variable {
         Some(name) => place((number, name.clone(), format!("`{name}`: {}", mistake.text))),
         None => place((number, "server".to_owned(), mistake.text)),
     })?;

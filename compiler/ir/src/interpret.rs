@@ -111,6 +111,13 @@ impl<'p> Interpreter<'p> {
         self.exchange = Some(Exchange::new(offset, blocks, bytes));
     }
 
+    /// After an event: `keeps` says which bytes of what computes the exchanged block it leaves as they are.
+    pub fn restart_exchanged(&mut self, keeps: &dyn Fn(usize) -> bool) {
+        if let Some(exchange) = &mut self.exchange {
+            exchange.restart(&mut self.memory, keeps);
+        }
+    }
+
     /// One scan of an instance. After an early end the state stays as it was at that point.
     pub fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Stop> {
         self.steps_left = self.budget;

@@ -24,7 +24,7 @@ mod mapping;
 mod mapping;
 
 pub(crate) use attachment::Ended;
-pub use client::remote::{Mistake, OnLoss, Remote, WordOrder};
+pub use client::{Mistake, check_remotes};
 pub use options::{AtEnd, Connection, Io};
 
 use crate::map::Map;

@@ -1,7 +1,7 @@
 //! The map: which variable lies where. The compiler writes it as text, one record a line.
 
 use crate::Error;
-use crate::attachments::Remote;
+use crate::remote::Remote;
 use staunch_runtime::{Elementary, Repr, StringType};
 use std::collections::BTreeMap;
 

@@ -8,12 +8,24 @@ pub(super) struct Exchange {
     offset: usize,
     own: &'static BlockInfo,
     other: &'static BlockInfo,
+    initial: Vec<u8>,
     bytes: Vec<u8>,
 }
 
 impl Exchange {
     pub fn new(offset: usize, [own, other]: [&'static BlockInfo; 2], bytes: &[u8]) -> Self {
-        Self { offset, own, other, bytes: bytes.to_vec() }
+        Self { offset, own, other, initial: bytes.to_vec(), bytes: bytes.to_vec() }
+    }
+
+    /// After an event, of which `keeps` says what it leaves of the bytes.
+    pub fn restart(&mut self, memory: &mut [u8], keeps: &dyn Fn(usize) -> bool) {
+        for (at, (byte, initial)) in self.bytes.iter_mut().zip(&self.initial).enumerate() {
+            if !keeps(at) {
+                *byte = *initial;
+            }
+        }
+        let own = &mut memory[self.offset..self.offset + self.own.size];
+        carry([self.other, self.own], Direction::Output, &self.bytes, own);
     }
 
     /// After a call of the block at an offset of the memory.
@@ -33,7 +45,8 @@ impl Exchange {
 /// Carries pins from one block to another.
 fn carry([from, to]: [&BlockInfo; 2], direction: Direction, source: &[u8], target: &mut [u8]) {
     let pins = to.pins.iter().filter(|it| it.direction == direction);
-    let pair = |pin: &'static Pin| Some((pin, from.pin_for(pin.role?)?));
+    let of_role = |pin: &Pin| from.pin_for(pin.role?);
+    let pair = |pin: &'static Pin| Some((pin, of_role(pin).or_else(|| from.pin(pin.name))?));
     for (pin, given) in pins.filter_map(pair) {
         let value = Value::read(given.repr(), &source[given.offset..]);
         let value = match value.as_integer() {

@@ -2,7 +2,6 @@
 //! takes the inputs of the last whole turn, and leaves the outputs of the last whole scan; it waits for nobody.
 
 mod plan;
-pub(super) mod remote;
 mod wire;
 
 use super::attachment::{Attachment, Ended};
@@ -10,9 +9,10 @@ use super::exchange::Exchange;
 use super::options::AtEnd;
 use super::points::{Point, Points};
 use crate::map::Map;
+use crate::remote::{OnLoss, Remote};
 use crate::{Error, Machine};
 use plan::Plan;
-use remote::{OnLoss, Remote};
+pub use plan::{Mistake, check_remotes};
 use std::fmt::Display;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};

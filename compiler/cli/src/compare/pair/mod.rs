@@ -15,6 +15,7 @@ pub mod passing;
 mod rest;
 mod same;
 
+pub use exchange::Change;
 pub use scan::{Faults, Input, Matched, Row, Step};
 pub use side::Side;
 

@@ -9,6 +9,7 @@ use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
 use staunch_ir::{Expr, ExprKind, Field, Program, Section, StatementKind, TextOp, Type, visit};
 use staunch_runtime::Time;
 use staunch_runtime::time::MILLISECOND;
+use std::cell::OnceCell;
 use std::collections::HashMap;
 
 /// A sentence for each rule that the program's source uses, or whose type it is given from outside, or that its cycle in
@@ -17,12 +18,13 @@ use std::collections::HashMap;
 /// `starts` are the values of variables at the start.
 pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<Name, Range>) -> Vec<String> {
     let rows = NOT_FOLLOWED.iter().filter(|it| it.dialect == dialect);
+    let harmless = Harmless::of(program, starts);
     let found = rows.filter_map(|row| {
         let is_moving = row.uses == Use::Part(Part::MovingPreset);
         let moving = || is_moving.then(|| moving_preset::line(program, starts)).flatten();
         let of_timers = || timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0);
         let line = used(program, row.uses).or_else(of_timers).or_else(moving)?;
-        if is_harmless(program, row.uses, starts) {
+        if harmless.has(row.uses) {
             return None;
         }
         let system = dialect.name().to_ascii_uppercase();
@@ -36,12 +38,26 @@ pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<N
     found.collect()
 }
 
-/// Whether no use of it leads to what the system does otherwise.
-fn is_harmless(program: &Program, uses: Use, starts: &HashMap<Name, Range>) -> bool {
-    match uses {
-        Use::Part(Part::LimitOfType) => !Ranges::of(program, starts).reach_limits(),
-        Use::Function("LEN") => lengths_are_stored(program),
-        Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..) | Use::Part(_) => false,
+/// What no use leads to of what a system does otherwise, by what the program's numbers may be.
+struct Harmless<'p> {
+    program: &'p Program,
+    starts: &'p HashMap<Name, Range>,
+    ranges: OnceCell<Ranges<'p>>,
+}
+
+impl<'p> Harmless<'p> {
+    fn of(program: &'p Program, starts: &'p HashMap<Name, Range>) -> Self {
+        Self { program, starts, ranges: OnceCell::new() }
+    }
+
+    fn has(&self, uses: Use) -> bool {
+        let ranges = || self.ranges.get_or_init(|| Ranges::of(self.program, self.starts));
+        match uses {
+            Use::Part(Part::LimitOfType) => !ranges().reach_limits(),
+            Use::Part(Part::Overflow | Part::StoredOverflow) => !ranges().overflow(),
+            Use::Function("LEN") => lengths_are_stored(self.program),
+            Use::Type(_) | Use::Function(_) | Use::Operator(..) | Use::Conversion(..) | Use::Part(_) => false,
+        }
     }
 }
 
@@ -64,10 +80,12 @@ fn lengths_are_stored(program: &Program) -> bool {
 }
 
 /// A sentence for each value that the system's documents leave open, and that the program may come to.
-pub fn open(program: &Program, dialect: Dialect) -> Vec<String> {
+pub fn open(program: &Program, dialect: Dialect, starts: &HashMap<Name, Range>) -> Vec<String> {
     let rows = EDGES.iter().filter(|it| it.dialect == dialect);
+    let harmless = Harmless::of(program, starts);
     let found = rows.filter_map(|row| {
-        let line = row.uses.iter().filter_map(|it| used(program, *it)).min()?;
+        let reached = row.uses.iter().filter(|it| !harmless.has(**it));
+        let line = reached.filter_map(|it| used(program, *it)).min()?;
         let (system, what) = (dialect.name().to_ascii_uppercase(), row.what);
         Some(format!(
             "The documents of {system} do not specify {what} (line {line}); Staunch: {} ({}).",

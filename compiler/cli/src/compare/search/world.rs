@@ -72,12 +72,10 @@ impl World {
         let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
         computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
         beyond::note_counters(pair, &mut computed);
-        let unfollowed = pair
-            .sides
-            .iter()
-            .enumerate()
-            .flat_map(|(side, it)| unfollowed::find(&it.program, it.dialect, cycle, &pair.starts(side)));
+        let sides = || pair.sides.iter().enumerate().map(|(side, it)| (it, pair.starts(side)));
+        let unfollowed = sides().flat_map(|(it, starts)| unfollowed::find(&it.program, it.dialect, cycle, &starts));
         let unfollowed = unfollowed.collect();
+        let open = sides().flat_map(|(it, starts)| unfollowed::open(&it.program, it.dialect, &starts)).collect();
         Ok(Self {
             alphabet,
             assumptions,
@@ -89,7 +87,7 @@ impl World {
             habits,
             computed,
             unfollowed,
-            open: pair.sides.iter().flat_map(|it| unfollowed::open(&it.program, it.dialect)).collect(),
+            open,
             in_common: alphabet::in_common(pair),
             tolerance: None,
         })

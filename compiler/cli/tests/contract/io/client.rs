@@ -9,8 +9,8 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 /// What it reads is copied to what it writes; `lost` is what it reads where nobody answers.
 const REMOTE: &str = "PROGRAM Main
 VAR
-    go AT %IX0.0 : BOOL; level AT %IW0 : INT; levels AT %IW10 : ARRAY[0..2] OF INT; total AT %ID0 : REAL; flag AT %IX0.1 : BOOL;
-    motor AT %QX0.0 : BOOL; valve AT %QX0.1 : BOOL; speed AT %QW0 : INT; sum AT %QD0 : REAL;
+    go AT %IX0.0 : BOOL; flag AT %IX0.1 : BOOL; level AT %IW10 : INT; levels AT %IW20 : ARRAY[0..2] OF INT; total AT %ID20 : REAL;
+    motor AT %QX0.0 : BOOL; valve AT %QX0.1 : BOOL; speed AT %QW10 : INT; sum AT %QD20 : REAL;
 END_VAR
 motor := go;
 valve := flag;

@@ -1,11 +1,13 @@
 //! Which requests read and write the variables of a connection: as few as possible, each of numbers that follow one another.
 
-use super::remote::{Remote, WordOrder};
 use crate::attachments::pdu;
 use crate::attachments::points::{Area, Point, Points, Width};
 use crate::attachments::registers::{REGISTER_BITS, Table};
-use crate::map::Map;
+use crate::map::{Map, Type};
 use crate::path;
+use crate::remote::{Remote, WordOrder};
+use staunch_runtime::Elementary;
+use std::collections::HashSet;
 
 /// What is wrong with a connection, or with one of its variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,6 +78,21 @@ const TABLES: [Table; 4] = [Table::Coils, Table::Discrete, Table::Input, Table::
 /// Numbers of a table.
 const NUMBERS: usize = 1 << 16;
 
+/// What is wrong with the servers of one program: the number of one, from 0, and its mistake.
+pub fn check_remotes(all: &[Remote], map: &Map) -> Result<(), (usize, Mistake)> {
+    let points = Points::of(map);
+    let mut inputs = HashSet::new();
+    for (number, remote) in all.iter().enumerate() {
+        let plan = Plan::of(remote, map, &points).map_err(|it| (number, it))?;
+        let twice = plan.named_inputs.iter().find(|(_, offset, bit)| !inputs.insert((*offset, *bit)));
+        if let Some((name, _, _)) = twice {
+            let text = "another connection writes the same input".to_owned();
+            return Err((number, Mistake { variable: Some(name.clone()), text }));
+        }
+    }
+    Ok(())
+}
+
 impl Plan {
     pub fn of(remote: &Remote, map: &Map, points: &Points) -> Result<Self, Mistake> {
         let mut plan = Self::default();
@@ -141,8 +158,17 @@ fn found(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
     let all: Vec<usize> = (0..map.instances.len()).collect();
     let place = path::resolve(map, &all, name)?;
     let end = place.offset + map.size_of(place.ty).max(1);
-    let bit = |it: &Point| if let crate::map::Type::Bit(bit) = place.ty { it.bit() == Some(bit) } else { true };
-    let of_it = |it: &&Point| (place.offset..end).contains(&it.offset()) && bit(it);
+    let mut leaf = place.ty;
+    while let Some(array) = map.array(leaf) {
+        leaf = array.element;
+    }
+    // Other variables may share the bytes.
+    let is_alike = |it: &Point| match leaf {
+        Type::Bit(bit) => it.bit() == Some(bit),
+        Type::Elementary(Elementary::Bool) => it.width == Width::Bit && it.bit().is_none(),
+        _ => it.width != Width::Bit && it.width.size() == map.size_of(leaf),
+    };
+    let of_it = |it: &&Point| (place.offset..end).contains(&it.offset()) && is_alike(it);
     let mut found: Vec<Point> = points.all.iter().filter(of_it).copied().collect();
     found.dedup_by_key(|it| (it.offset(), it.bit()));
     match found.first() {

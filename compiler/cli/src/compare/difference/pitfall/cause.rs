@@ -3,7 +3,7 @@
 use super::advice::{Counting, Form, Rules};
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
 use super::list::Pitfall;
-use crate::compare::pair::{Matched, Pair, Row};
+use crate::compare::pair::{Change, Matched, Pair, Row};
 use crate::compare::program::apart::Declared;
 use crate::compare::program::dependency::Dependencies;
 use crate::compare::program::scalar::{Instance, Role};
@@ -12,6 +12,9 @@ use crate::compare::program::walked::Name;
 use staunch_host::Event;
 use staunch_runtime::{Family, PinRole};
 use std::collections::HashSet;
+
+/// More that may be the cause are not tried.
+const MAX_SUSPECTS: usize = 64;
 
 /// What the last scan has made of a counter: `None` if it does not differ because of it, and within it no
 /// pitfall where none explains it.
@@ -147,6 +150,9 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
         return direct;
     }
     let relevant = Relevant::of(pair, differences);
+    if let Some(found) = shown(pair, rows, habits, &relevant) {
+        return found;
+    }
     let found = roots(pair, rows, habits, &relevant);
     let restarted = rows.iter().position(|row| row.event.is_some() && relevant.differs(pair, row));
     if let Some(found) = found.filter(|it| restarted.is_none_or(|row| it.row <= row)) {
@@ -154,17 +160,15 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     }
     let counter = direct.counter;
     if let Some(row) = restarted {
-        let counter = counter.or_else(|| kept_by_one(pair, rows, row, &relevant));
+        let kept = || kept_by_one(pair, rows, row, &relevant).first().map(|it| pair.path(*it).to_owned());
+        let counter = counter.or_else(kept);
         return Cause { counter, pitfall: Some(Pitfall::RESTART) };
     }
     if let Some(counter) = held_through_reset(pair, rows, habits) {
         return Cause { counter: Some(counter), pitfall: Some(Pitfall::numbered(6)) };
     }
-    if let Some(block) = first_fall(pair, rows) {
-        return Cause { counter: Some(block), pitfall: Some(Pitfall::FIRST_FALL) };
-    }
-    if let Some(block) = later_call(pair, rows) {
-        return Cause { counter: Some(block), pitfall: Some(Pitfall::LATER_CALL) };
+    if let Some((block, pitfall)) = first_other_block(pair, rows, &relevant) {
+        return Cause { counter: Some(block), pitfall: Some(pitfall) };
     }
     let widths = differences.iter().any(|[a, b]| {
         let [a, b] = [pair.scalar(0, *a), pair.scalar(1, *b)];
@@ -175,10 +179,67 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     Cause { counter, pitfall }
 }
 
-/// A variable that decides the differences, which one side alone has kept in the event of a row: there it had another value
-/// than the other side begins with.
-fn kept_by_one(pair: &Pair, rows: &[Row], at: usize, relevant: &Relevant) -> Option<String> {
-    let event = rows[at].event?;
+/// What may be the cause.
+struct Suspect {
+    row: usize,
+    path: String,
+    pitfall: Pitfall,
+    change: Change,
+}
+
+/// Of several that may be the cause, the first with which nothing of what is looked at differs any more where it alone is as
+/// on the other system.
+fn shown(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Option<Cause> {
+    let mut all = suspects(pair, rows, habits, relevant);
+    all.sort_by_key(|it| it.row);
+    let several = all.len() > 1 && !relevant.found.is_empty();
+    let mut tried = all.into_iter().filter(|_| several).take(MAX_SUSPECTS);
+    let found = tried.find(|it| pair.agrees_with(&it.change, rows, &relevant.found))?;
+    Some(Cause { counter: Some(found.path), pitfall: Some(found.pitfall) })
+}
+
+/// The counters and other blocks that part by themselves and decide the differences, and the variables that one side alone
+/// has kept.
+fn suspects(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Vec<Suspect> {
+    let mut found = Vec::new();
+    for (counter, own) in habits.iter().enumerate() {
+        let instance = pair.instances(counter)[0];
+        if relevant.has(instance.field, &HashSet::new())
+            && let Some(Parting { row, pitfall, .. }) = parting(pair, rows, counter, *own)
+        {
+            found.push(Suspect { row, path: instance.path.clone(), pitfall, change: Change::Counter(counter) });
+        }
+    }
+    for block in 0..pair.blocks.len() {
+        let instance = &pair.sides[0].scalars.blocks[pair.blocks[block][0]];
+        if relevant.has(instance.field, &HashSet::new())
+            && let Some((row, pitfall)) = other_block(pair, rows, block)
+        {
+            found.push(Suspect { row, path: instance.path.clone(), pitfall, change: Change::Block(block) });
+        }
+    }
+    for (row, _) in rows.iter().enumerate().filter(|it| it.1.event.is_some()) {
+        let kept = kept_by_one(pair, rows, row, relevant);
+        let mut groups: Vec<(Option<Declared>, Vec<Matched>)> = Vec::new();
+        for it in kept {
+            let declared = pair.declared(0, it);
+            match groups.iter_mut().find(|group| group.0 == declared) {
+                Some(group) => group.1.push(it),
+                None => groups.push((declared, vec![it])),
+            }
+        }
+        for (_, group) in groups {
+            let path = pair.path(group[0]).to_owned();
+            found.push(Suspect { row, path, pitfall: Pitfall::RESTART, change: Change::Kept(group) });
+        }
+    }
+    found
+}
+
+/// Variables that decide the differences, which one side alone has kept in the event of a row: there they had another value
+/// than the other side begins with. Those come first that fewer of the others decide.
+fn kept_by_one(pair: &Pair, rows: &[Row], at: usize, relevant: &Relevant) -> Vec<Matched> {
+    let Some(event) = rows[at].event else { return Vec::new() };
     let before = at.checked_sub(1).map_or(pair.start(), |it| rows[it].states.each_ref().map(Vec::as_slice));
     let is_kept = |it: &Matched| {
         let keeps = [0, 1].map(|side: usize| pair.sides[side].keeps(event, pair.scalar(side, it[side]).offset));
@@ -188,10 +249,10 @@ fn kept_by_one(pair: &Pair, rows: &[Row], at: usize, relevant: &Relevant) -> Opt
         keeps[0] != keeps[1] && value(before[side]) != value(pair.start()[side])
     };
     let all = pair.matched(|it| matches!(it.role, Role::Variable)).into_iter();
-    let decides: Vec<Matched> =
+    let mut decides: Vec<Matched> =
         all.filter(|it| is_kept(it) && relevant.has(pair.declared(0, *it), &HashSet::new())).collect();
     // What another of them decides is made anew in the scan.
-    let follows = |it: &Matched| {
+    let follows = |decides: &[Matched], it: &Matched| {
         let others = decides.iter().filter(|other| pair.declared(0, **other) != pair.declared(0, *it));
         let decided = |other: &Matched| {
             let found = pair.declared(0, *other).map(|other| relevant.dependencies.follow(other));
@@ -199,7 +260,9 @@ fn kept_by_one(pair: &Pair, rows: &[Row], at: usize, relevant: &Relevant) -> Opt
         };
         others.filter(|other| decided(other)).count()
     };
-    decides.iter().min_by_key(|it| follows(it)).map(|it| pair.path(*it).to_owned())
+    let before = decides.clone();
+    decides.sort_by_cached_key(|it| follows(&before, it));
+    decides
 }
 
 /// What the differences at the end depend on.
@@ -248,9 +311,6 @@ fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     let declared = |counter: usize| pair.instances(counter)[0].field;
     let all = (0..habits.len()).filter(|it| relevant.has(declared(*it), &HashSet::new()));
     let found: Vec<Parting> = all.filter_map(|it| parting(pair, rows, it, habits[it])).collect();
-    if let Some(found) = exchanged(pair, rows, relevant, &found) {
-        return Some(found);
-    }
     let roots: Vec<Parting> = found.iter().copied().filter(|it| it.is_root).collect();
     let is_near = |it: &&Parting| {
         let others = roots.iter().map(|it| it.counter).filter(|other| *other != it.counter);
@@ -261,15 +321,6 @@ fn roots(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     };
     let first = |found: &mut dyn Iterator<Item = &Parting>| found.min_by_key(|it| it.row).copied();
     first(&mut roots.iter().filter(is_near)).or_else(|| first(&mut roots.iter())).or_else(|| first(&mut found.iter()))
-}
-
-/// Of several counters that part, the first with which nothing of what is looked at differs any more where it alone is
-/// computed as on the other system.
-fn exchanged(pair: &Pair, rows: &[Row], relevant: &Relevant, found: &[Parting]) -> Option<Parting> {
-    let mut sorted = found.to_vec();
-    sorted.sort_by_key(|it| it.row);
-    let several = sorted.len() > 1 && !relevant.found.is_empty();
-    sorted.into_iter().filter(|_| several).find(|it| pair.agrees_with(it.counter, rows, &relevant.found))
 }
 
 /// The first row in which a counter differs because of a pitfall.
@@ -292,32 +343,36 @@ fn case_in(pair: &Pair, rows: &[Row], at: usize, counter: usize, habits: Habits)
     case(pair, counter, [before, now], rows[at].event, habits).map(|it| Case { first: at == 0, ..it })
 }
 
-/// The first F_TRIG that comes to differ because it is another block on the other system.
-fn first_fall(pair: &Pair, rows: &[Row]) -> Option<String> {
-    first_other(pair, rows, |it| pair.is_other_one_shot(it), |it, states| pair.is_given_alike(it, states))
-}
-
-/// The first timer that does.
-fn later_call(pair: &Pair, rows: &[Row]) -> Option<String> {
-    let may = |it: usize, states: [&[u8]; 2]| pair.is_given_alike(it, states) && pair.is_over_at_once(it, states);
-    first_other(pair, rows, |it| pair.is_other_timer(it), may)
-}
-
-fn first_other(
-    pair: &Pair,
-    rows: &[Row],
-    is_other: impl Fn(usize) -> bool,
-    may: impl Fn(usize, [&[u8]; 2]) -> bool,
-) -> Option<String> {
-    let parts = |at: usize, block: usize| {
-        let outputs = &pair.block_outputs[block];
-        let part =
-            outputs.iter().all(|it| agrees(pair, rows, at, *it)) && outputs.iter().any(|it| !pair.same(*it, &rows[at]));
-        part && may(block, rows[at].states.each_ref().map(Vec::as_slice))
+/// The first F_TRIG or timer that comes to differ because it is another block on the other system, of those that decide the
+/// differences if there is one.
+fn first_other_block(pair: &Pair, rows: &[Row], relevant: &Relevant) -> Option<(String, Pitfall)> {
+    let field = |block: usize| pair.sides[0].scalars.blocks[pair.blocks[block][0]].field;
+    let (near, far): (Vec<_>, Vec<_>) =
+        (0..pair.blocks.len()).partition(|it| relevant.has(field(*it), &HashSet::new()));
+    let first = |all: Vec<usize>| {
+        let parting = all.into_iter().filter_map(|it| other_block(pair, rows, it).map(|found| (it, found)));
+        parting.min_by_key(|(block, (row, pitfall))| (*pitfall, *row, *block))
     };
-    let others: Vec<_> = (0..pair.blocks.len()).filter(|it| is_other(*it)).collect();
-    let first = (0..rows.len()).find_map(|at| others.iter().copied().find(|it| parts(at, *it)))?;
-    Some(pair.sides[0].scalars.blocks[pair.blocks[first][0]].path.clone())
+    let (block, (_, pitfall)) = first(near).or_else(|| first(far))?;
+    Some((pair.sides[0].scalars.blocks[pair.blocks[block][0]].path.clone(), pitfall))
+}
+
+/// The row in which an F_TRIG or a timer comes to differ because it is another block on the other system, and its pitfall.
+fn other_block(pair: &Pair, rows: &[Row], block: usize) -> Option<(usize, Pitfall)> {
+    let pitfall = match (pair.is_other_one_shot(block), pair.is_other_timer(block)) {
+        (true, _) => Pitfall::FIRST_FALL,
+        (false, true) => Pitfall::LATER_CALL,
+        (false, false) => return None,
+    };
+    let outputs = &pair.block_outputs[block];
+    let parts = |at: &usize| {
+        let states = rows[*at].states.each_ref().map(Vec::as_slice);
+        outputs.iter().all(|it| agrees(pair, rows, *at, *it))
+            && outputs.iter().any(|it| !pair.same(*it, &rows[*at]))
+            && pair.is_given_alike(block, states)
+            && (pitfall == Pitfall::FIRST_FALL || pair.is_over_at_once(block, states))
+    };
+    (0..rows.len()).find(parts).map(|row| (row, pitfall))
 }
 
 /// Whether these agreed before a row.

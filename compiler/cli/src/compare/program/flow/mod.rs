@@ -56,9 +56,17 @@ impl<'p> Ranges<'p> {
 
     /// Whether a FOR may come to the limit of its counter's type.
     pub fn reach_limits(&self) -> bool {
+        self.walked().any(|it| it.reaches_limit)
+    }
+
+    /// Whether a sum, difference or product may pass the range of a signed type of 32 or 64 bits.
+    pub fn overflow(&self) -> bool {
+        self.walked().any(|it| it.overflows)
+    }
+
+    fn walked(&self) -> impl Iterator<Item = walk::Plain> {
         let routines = 0..self.names.program.routines.len();
-        let mut walked = routines.map(|at| walk::routine(&self.names, RoutineId::next(at), &mut Written::default()));
-        walked.any(|it| it.reaches_limit)
+        routines.map(|at| walk::routine(&self.names, RoutineId::next(at), &mut Written::default()))
     }
 
     /// The program in its plain form: to be printed, not to be run. `None` where it may fault.

@@ -5,11 +5,11 @@ use super::known::{Known, may_share};
 use super::names::{Names, Written};
 use crate::compare::program::walked::Walked;
 use staunch_ir::faults::{Faults, code_faults};
-use staunch_ir::interval::Interval;
+use staunch_ir::interval::{Interval, result};
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
-    Argument, Arm, ArrayId, Block, Const, Expr, For, LocalId, Mode, Op, Place, Program, Root, Routine, RoutineId,
-    Statement, StatementKind, Step, Type,
+    Argument, Arm, ArrayId, Block, Const, Expr, ExprKind, For, LocalId, Mode, Op, Place, Program, Root, Routine,
+    RoutineId, Statement, StatementKind, Step, Type,
 };
 use std::rc::Rc;
 
@@ -20,6 +20,8 @@ pub struct Plain {
     pub faults: bool,
     /// A loop of it may come to the limit of its counter's type.
     pub reaches_limit: bool,
+    /// A sum, difference or product of it may pass the range of a signed type of 32 or 64 bits.
+    pub overflows: bool,
 }
 
 pub fn routine(names: &Names<'_>, id: RoutineId, written: &mut Written) -> Plain {
@@ -42,9 +44,10 @@ pub fn routine(names: &Names<'_>, id: RoutineId, written: &mut Written) -> Plain
         }
     }
     let way = Way { known, values: Values::new() };
-    let mut walk = Walk { program: names.program, routine, id, written, faults: false, reaches_limit: false };
+    let mut walk =
+        Walk { program: names.program, routine, id, written, faults: false, reaches_limit: false, overflows: false };
     let (body, _) = walk.block(&routine.body, Some(way));
-    Plain { body, faults: walk.faults, reaches_limit: walk.reaches_limit }
+    Plain { body, faults: walk.faults, reaches_limit: walk.reaches_limit, overflows: walk.overflows }
 }
 
 /// What is known on the way to a statement.
@@ -116,6 +119,20 @@ fn either<'n, 'p>(a: Option<Way<'n, 'p>>, b: Option<Way<'n, 'p>>) -> Option<Way<
     }
 }
 
+/// Whether a result may pass the range of a signed type of 32 or 64 bits.
+fn may_overflow(known: &Known<'_, '_>, value: &Expr) -> bool {
+    let ExprKind::Apply(op @ (Op::Add | Op::Sub | Op::Mul | Op::Neg | Op::Abs), operands) = &value.kind else {
+        return false;
+    };
+    let is_wide =
+        value.ty.elementary().is_some_and(|it| it.is_integer() && it.repr().size() >= 4 && it.repr().is_signed());
+    let fits = || {
+        let exact = known.all(operands).and_then(|it| result(*op, &it));
+        exact.zip(known.whole(value.ty)).is_some_and(|(exact, whole)| exact.lies_in(whole))
+    };
+    is_wide && !fits()
+}
+
 /// Whether it runs statements that are not in it.
 fn runs_others(statement: &Statement) -> bool {
     matches!(statement.kind, StatementKind::Call { .. } | StatementKind::External(_))
@@ -128,6 +145,7 @@ struct Walk<'w, 'p> {
     written: &'w mut Written,
     faults: bool,
     reaches_limit: bool,
+    overflows: bool,
 }
 
 type Ways<'n, 'p> = Option<Way<'n, 'p>>;
@@ -322,6 +340,7 @@ impl<'p> Walk<'_, 'p> {
     /// Whether it may end the scan, by itself.
     fn note_faults(&mut self, statement: &Statement, way: &Way<'_, 'p>) {
         let known = &way.known;
+        visit::all_exprs(statement, &mut |it| self.overflows |= may_overflow(known, it));
         let is_within = |index: &Expr, array: Option<ArrayId>| {
             let array = array.map(|it| self.program.array(it));
             array.zip(known.of(index)).is_some_and(|(array, it)| it.lies_in((array.low.into(), array.high.into())))

@@ -1,8 +1,8 @@
 //! Which requests a mapping comes to, and what is wrong with others.
 
-use super::super::remote::OnLoss;
 use super::*;
 use crate::fixture::map_with;
+use crate::remote::OnLoss;
 use std::time::Duration;
 
 fn remote(variables: &[(&str, &str)], word_order: Option<WordOrder>) -> Remote {
@@ -116,7 +116,7 @@ fn the_map_carries_it() {
     let text = format!("map\t1\nmachine\t64\t8\n{}\n", before.lines().join("\n"));
     assert_eq!(Map::parse(&text).unwrap().remotes, [before.clone()]);
     let twice = [before, remote(&[("%IW0", "coil 0")], None)];
-    let wrong = |all: &[Remote]| Remote::check(all, &plant()).unwrap_err();
+    let wrong = |all: &[Remote]| check_remotes(all, &plant()).unwrap_err();
     assert_eq!(wrong(&twice).0, 0);
     let inputs = |name| remote(&[(name, "input-register 3")], None);
     let (number, mistake) = wrong(&[inputs("v0"), inputs("%IW0")]);

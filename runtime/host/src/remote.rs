@@ -1,10 +1,5 @@
 //! A server that a run reads from and writes to, as `staunch.toml` describes it and the map carries it.
 
-pub use super::plan::Mistake;
-use super::plan::Plan;
-use crate::attachments::points::Points;
-use crate::map::Map;
-use std::collections::HashSet;
 use std::time::Duration;
 
 /// A Modbus TCP server (a slave), and which of its coils and registers are which variables.
@@ -60,21 +55,6 @@ fn named<T: Copy>(all: &[(&'static str, T)], word: &str) -> Option<T> {
 }
 
 impl Remote {
-    /// What is wrong with these servers of one program.
-    pub fn check(all: &[Self], map: &Map) -> Result<(), (usize, Mistake)> {
-        let points = Points::of(map);
-        let mut inputs = HashSet::new();
-        for (number, remote) in all.iter().enumerate() {
-            let plan = Plan::of(remote, map, &points).map_err(|it| (number, it))?;
-            let twice = plan.named_inputs.iter().find(|(_, offset, bit)| !inputs.insert((*offset, *bit)));
-            if let Some((name, _, _)) = twice {
-                let text = "another connection writes the same input".to_owned();
-                return Err((number, Mistake { variable: Some(name.clone()), text }));
-            }
-        }
-        Ok(())
-    }
-
     /// As the map carries it.
     pub fn lines(&self) -> Vec<String> {
         let order = self.word_order.map_or("-", |it| word(&WordOrder::ALL, it));
