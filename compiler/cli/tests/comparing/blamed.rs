@@ -185,3 +185,57 @@ END_PROGRAM
         assert!(text.contains(said) && !text.contains("Trap 4"), "{text}");
     }
 }
+
+/// Programs in which several things part, of which one alone takes the difference away where it is as on the other system.
+#[test]
+fn what_takes_the_difference_away_is_blamed() {
+    let program = |variables: &str, body: &str| {
+        format!(
+            "PROGRAM p VAR_INPUT s : BOOL; END_VAR VAR_OUTPUT q : BOOL; n : INT; END_VAR VAR {variables} END_VAR\n{body}\nEND_PROGRAM\n"
+        )
+    };
+    let total = "i, tmp, total : INT; a : ARRAY[0..3] OF INT;";
+    for (name, variables, body, systems, blamed) in [
+        (
+            "temporary",
+            total,
+            "tmp := 1; IF s AND total < 5 THEN total := total + tmp; END_IF; n := total;",
+            ("codesys", "iec"),
+            "Trap 11 (`total`)",
+        ),
+        (
+            "loop_counter",
+            total,
+            "FOR i := 0 TO 2 DO IF s AND total < 5 THEN total := total + 1; END_IF; END_FOR; n := total;",
+            ("codesys", "iec"),
+            "Trap 11 (`total`)",
+        ),
+        (
+            "two_timers",
+            "t1, t2 : TON;",
+            "t1(IN := s, PT := T#0s); t2(IN := s, PT := T#0s); q := t2.Q;",
+            ("iec", "openplc"),
+            "Trap 19 (`t2`)",
+        ),
+        ("two_falls", "a, b : F_TRIG;", "a(CLK := s); b(CLK := s); q := b.Q;", ("iec", "openplc"), "Trap 16 (`b`)"),
+        (
+            "timer_and_counter",
+            "c : CTD; t : TON;",
+            "c(CD := s, LD := FALSE, PV := 3); t(IN := s, PT := T#0s); q := t.Q AND c.Q;",
+            ("iec", "openplc"),
+            "Trap 19 (`t`)",
+        ),
+        (
+            "fall_and_counter",
+            "c : CTD; e : F_TRIG;",
+            "c(CD := s, LD := FALSE, PV := 4); e(CLK := NOT s); q := e.Q AND c.Q;",
+            ("iec", "openplc"),
+            "Trap 16 (`e`)",
+        ),
+    ] {
+        let (from, to) = systems;
+        let source = program(variables, body);
+        let (code, text) = OWN.compare(name, &source, &["--from", from, "--to", to, "--vars", "q,n"]);
+        assert!(code == Some(1) && text.contains(blamed), "{name}: {text}");
+    }
+}

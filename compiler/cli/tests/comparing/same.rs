@@ -46,6 +46,7 @@ fn what_fits_is_the_same_in_any_type() {
         "FOR i := 0 TO 3 DO t[i] := i * 8000; END_FOR; n := t[3];",
         "kept := a MOD 100; n := kept * 300 / 2;",
         "n := Twice(a) / 2;",
+        "IF d >= 0 AND d <= 27648 THEN m := d * 100 / 27648; END_IF;",
     ];
     for (at, body) in bodies.iter().enumerate() {
         for systems in [("iec", "openplc"), ("siemens", "iec"), ("openplc4", "siemens"), ("iec", "codesys")] {
@@ -56,6 +57,17 @@ fn what_fits_is_the_same_in_any_type() {
     for body in [bodies[3], bodies[4], bodies[0]] {
         let (code, text) = verdict("of_logix", body, ("logix", "iec"));
         assert_eq!(code, Some(0), "{body}\n{text}");
+    }
+}
+
+/// What the documents leave open is named where the program may come to it.
+#[test]
+fn an_overflow_that_cannot_be_is_not_spoken_of() {
+    for (body, is_named) in
+        [("IF on AND m < 100 THEN m := m + 1; END_IF;", false), ("IF on THEN m := m + d; END_IF;", true)]
+    {
+        let (_, text) = verdict(&format!("overflow_{is_named}"), body, ("iec", "openplc"));
+        assert_eq!(text.contains("passes its range"), is_named, "{text}");
     }
 }
 

@@ -194,6 +194,14 @@ fn a_setting_that_is_wrong_is_reported_at_its_line() {
         folder.write("staunch.toml", format!("# a plant\n{setting}\n"));
         has(&folder.staunch("check p.st").err(2), &[&format!("staunch.toml:{line}: "), text]);
     }
+    // One that cannot be read is not passed over: the program would be compiled by other settings.
+    #[cfg(unix)]
+    for target in ["missing.toml", "staunch.toml", ".", "/dev/zero"] {
+        std::fs::remove_file(folder.0.join("staunch.toml")).unwrap();
+        std::os::unix::fs::symlink(target, folder.0.join("staunch.toml")).unwrap();
+        has(&folder.staunch("check p.st").err(2), &["error: staunch.toml: "]);
+    }
+    std::fs::remove_file(folder.0.join("staunch.toml")).unwrap();
     folder.write("staunch.toml", "files = [\n\"p.st\",\n\"q.st\"]\n");
     has(&folder.staunch("check").err(2), &["staunch.toml:3: there is no file or folder `q.st`"]);
 }

@@ -358,8 +358,8 @@ fn integers(repr: Repr, Range { low, high, step }: Range, ty: Type, near: &Numbe
     (found.into_iter().filter_map(|it| repr.integer(it)).collect(), whole)
 }
 
-/// Halves, which systems round in different ways, and what an INT does not hold.
-const ROUNDED: [f64; 3] = [2.5, -1.5, 40_000.0];
+/// Halves, which systems round in different ways, and what an INT and a DINT do not hold.
+const ROUNDED: [f64; 4] = [2.5, -1.5, 40_000.0, 3.0e9];
 
 fn reals(repr: Repr, near: &Numbers) -> Vec<Value> {
     let mut found = Vec::new();

@@ -473,13 +473,13 @@ impl Choice for TimeUnit {
         match self {
             Self::Nanoseconds => "64 bits of nanoseconds with a sign",
             Self::SecondsAndNanoseconds => {
-                "32 bits of seconds with a sign, and nanoseconds: `T#24855d + T#1d` is `T#-24854d6h28m16s`"
+                "32 bits of seconds with a sign, and nanoseconds: a day after `T#24855d` is `T#-24854d6h28m16s`"
             }
             Self::Milliseconds => {
-                "32 bits of milliseconds without a sign: `T#0ms - T#1ms` is `T#49d17h2m47s295ms`, `T#5ms / 2` is `T#2ms`"
+                "32 bits of milliseconds without a sign: `t - T#1ms` of a `t` that is 0 is `T#49d17h2m47s295ms`, `T#5ms / 2` is `T#2ms`"
             }
             Self::SignedMilliseconds => {
-                "32 bits of milliseconds with a sign: `T#24d20h31m23s647ms + T#1ms` is `T#-24d20h31m23s648ms`, `T#5ms / 2` is `T#2ms`"
+                "32 bits of milliseconds with a sign: `t + T#1ms` of the greatest `t` is `T#-24d20h31m23s648ms`, `T#5ms / 2` is `T#2ms`"
             }
         }
     }
