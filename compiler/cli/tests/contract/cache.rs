@@ -3,7 +3,8 @@
 use super::{COUNTER, Folder, Ran, has};
 use std::fs;
 use std::os::unix::fs::{MetadataExt, PermissionsExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::{Duration, SystemTime};
 
 const DAY: Duration = Duration::from_secs(24 * 60 * 60);
@@ -11,6 +12,34 @@ const DAY: Duration = Duration::from_secs(24 * 60 * 60);
 fn run(folder: &Folder) -> Ran {
     let mut command = folder.command("run main.st --scans 1 --quiet --backend rust");
     Ran::of(command.env("STAUNCH_CACHE", folder.0.join("cache")).output().unwrap())
+}
+
+/// Puts a compiled runtime into a cache: compiling it takes half a minute, which is spent once.
+fn seed(cache: &Path) {
+    static SEED: OnceLock<PathBuf> = OnceLock::new();
+    let seed = SEED.get_or_init(|| {
+        let folder = Folder::with("cache_seeded", &[("main.st", COUNTER)]);
+        let seed = folder.0.with_file_name("cache_seed");
+        let mut command = folder.command("run main.st --scans 1 --quiet --backend rust");
+        Ran::of(command.env("STAUNCH_CACHE", &seed).output().unwrap()).out(0);
+        seed
+    });
+    // Of several, the one that was just used: an older command's may be there.
+    let entries = fs::read_dir(seed).unwrap().map(|it| it.unwrap());
+    let runtimes = entries.filter(|it| it.file_name().to_string_lossy().starts_with("runtime-"));
+    let newest = runtimes.max_by_key(|it| it.metadata().unwrap().modified().unwrap()).unwrap();
+    copy(&newest.path(), &cache.join(newest.file_name()));
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(|it| it.unwrap()) {
+        let to = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &to),
+            false => _ = fs::copy(entry.path(), to).unwrap(),
+        }
+    }
 }
 
 fn make(cache: &Path, mode: u32) {
@@ -48,6 +77,7 @@ fn it_is_private_and_what_is_old_goes() {
     let folder = Folder::with("cache_old", &[("main.st", COUNTER)]);
     let cache = folder.0.join("cache");
     make(&cache, 0o755);
+    seed(&cache);
     let name = |kind: &str, digit: &str| format!("{kind}-{}", digit.repeat(32));
     entry(&cache, &name("program", "a"), 1, 31 * DAY);
     entry(&cache, &format!(".{}.77.0", name("program", "b")), 1, 31 * DAY);
@@ -75,6 +105,8 @@ fn it_is_private_and_what_is_old_goes() {
 fn an_entry_that_is_not_whole_is_made_again() {
     let folder = Folder::with("cache_torn", &[("main.st", COUNTER)]);
     let cache = folder.0.join("cache");
+    make(&cache, 0o700);
+    seed(&cache);
     let traced = || {
         let mut command = folder.command("run main.st --scans 1 --backend rust --trace - --vars full");
         Ran::of(command.env("STAUNCH_CACHE", &cache).output().unwrap()).out(0)
