@@ -47,7 +47,7 @@ fn remote(modbus: &Modbus) -> Result<Remote, (String, String)> {
             .map(|it| Duration::from_nanos(it.unsigned_abs())),
         None => Ok(other),
     };
-    let name = modbus.name.clone().unwrap_or_else(|| format!("modbus {server}"));
+    let name = modbus.name.clone().unwrap_or_else(|| server.clone());
     if name.chars().any(char::is_control) {
         return Err(fail("name", "`name` is one line of text".to_owned()));
     }

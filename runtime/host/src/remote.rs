@@ -5,7 +5,7 @@ use std::time::Duration;
 /// A Modbus TCP server (a slave), and which of its coils and registers are which variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remote {
-    /// In messages.
+    /// In messages; that may be the server's address.
     pub name: String,
     /// `192.168.0.20:502`
     pub server: String,
@@ -55,6 +55,14 @@ fn named<T: Copy>(all: &[(&'static str, T)], word: &str) -> Option<T> {
 }
 
 impl Remote {
+    /// As messages name it.
+    pub(crate) fn label(&self) -> String {
+        match self.name == self.server {
+            true => format!("modbus {}", self.server),
+            false => format!("modbus {} ({})", self.name, self.server),
+        }
+    }
+
     /// As the map carries it.
     pub fn lines(&self) -> Vec<String> {
         let order = self.word_order.map_or("-", |it| word(&WordOrder::ALL, it));

@@ -39,7 +39,7 @@ pub(super) struct Client {
     ended: Receiver<()>,
     /// How long that may take.
     patience: Duration,
-    name: String,
+    label: String,
     quiet: bool,
 }
 
@@ -63,7 +63,8 @@ struct Account {
 
 impl Client {
     pub fn start(remote: &Remote, map: &Map, points: &Points, at_end: AtEnd, quiet: bool) -> Result<Self, Error> {
-        let plan = Plan::of(remote, map, points).map_err(|it| Error::Usage(format!("{}: {}", remote.name, it.text)))?;
+        let plan =
+            Plan::of(remote, map, points).map_err(|it| Error::Usage(format!("{}: {}", remote.label(), it.text)))?;
         let shared = Arc::new(Shared {
             exchange: Exchange::new(plan.points.len()),
             is_over: AtomicBool::new(false),
@@ -77,8 +78,8 @@ impl Client {
         let named = thread::Builder::new().name("modbus server".to_owned()).stack_size(STACK);
         named
             .spawn(move || worker.work())
-            .map_err(|error| Error::Usage(format!("{}: cannot start a thread: {error}", remote.name)))?;
-        Ok(Self { points, shared, at_end, turn: 0, ended, patience, name: remote.name.clone(), quiet })
+            .map_err(|error| Error::Usage(format!("{}: cannot start a thread: {error}", remote.label())))?;
+        Ok(Self { points, shared, at_end, turn: 0, ended, patience, label: remote.label(), quiet })
     }
 }
 
@@ -98,7 +99,7 @@ impl Attachment for Client {
             return None;
         }
         let trouble = self.shared.account().trouble.clone();
-        Some(Error::Connection { name: self.name.clone(), trouble })
+        Some(Error::Connection { name: self.label.clone(), trouble })
     }
 
     /// Outputs at their safe values are written as the thread's last act.
@@ -110,7 +111,7 @@ impl Attachment for Client {
         let _ = self.ended.recv_timeout(self.patience);
         if !self.quiet {
             let Account { answered, failed, .. } = self.shared.account().clone();
-            crate::error::tell(format_args!("note: {}: {answered} requests answered, {failed} not", self.name));
+            crate::error::tell(format_args!("note: {}: {answered} requests answered, {failed} not", self.label));
         }
     }
 }
@@ -204,11 +205,7 @@ impl Worker {
 
     fn found(&mut self) {
         if let Some(lost) = self.lost.take() {
-            self.tell(format_args!(
-                "{} answers again, after {}",
-                self.remote.server,
-                crate::spoken::rounded(lost.elapsed())
-            ));
+            self.tell(format_args!("it answers again, after {}", crate::spoken::rounded(lost.elapsed())));
         }
     }
 
@@ -218,7 +215,7 @@ impl Worker {
         if self.lost.is_some() {
             return;
         }
-        account.trouble = format!("{}: {trouble}", self.remote.server);
+        account.trouble = trouble.to_string();
         drop(account);
         self.lost = Some(Instant::now());
         let what = match self.remote.on_loss {
@@ -233,10 +230,10 @@ impl Worker {
                 return;
             }
         };
-        self.tell(format_args!("{}: {trouble}; {what}", self.remote.server));
+        self.tell(format_args!("{trouble}; {what}"));
     }
 
     fn tell(&self, what: impl Display) {
-        crate::error::tell(format_args!("warning: {}: {what}", self.remote.name));
+        crate::error::tell(format_args!("warning: {}: {what}", self.remote.label()));
     }
 }

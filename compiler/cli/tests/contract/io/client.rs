@@ -130,7 +130,15 @@ fn a_server_is_read_and_written() {
     until("the new server is read", || server.ask("get co 1") == [1, 0]);
     plant.signal("-TERM");
     let said = plant.ended(0);
-    has(&said, &["warning: pump: 127.0.0.1:", "; inputs are 0 and FALSE", "answers again, after ", "note: pump: "]);
+    has(
+        &said,
+        &[
+            "warning: modbus pump (127.0.0.1:",
+            "; inputs are 0 and FALSE",
+            "it answers again, after ",
+            "note: modbus pump (",
+        ],
+    );
     // Outputs are safe at the end.
     assert_eq!(server.ask("get co 1"), [0, 0]);
     server.end();
@@ -160,9 +168,9 @@ fn a_server_that_does_not_answer_ends_a_run_that_needs_it() {
     let folder = project("io_client_lost", &settings("fault"), "level = \"input-register 3\"\n");
     let run = "run main.st --realtime --cycle 2ms";
     let lost = folder.staunch(&format!("{run} --scans 2000")).err(3);
-    has(&lost, &["error: connection: pump: 127.0.0.1:", "nobody listens there (on-loss = \"fault\")"]);
+    has(&lost, &["error: connection: modbus pump (127.0.0.1:", "nobody listens there (on-loss = \"fault\")"]);
     let lost = folder.staunch(&format!("{run} --scans 2000 --message-format json")).out(3);
-    has(&lost, &["\"kind\":\"connection\",\"connection\":\"pump\""]);
+    has(&lost, &["\"kind\":\"connection\",\"connection\":\"modbus pump ("]);
     folder.write("staunch.toml", format!("[[modbus]]\n{}\n", settings("hold")));
     has(&folder.staunch(&format!("{run} --scans 100")).err(0), &["inputs stay as they are"]);
     // On the virtual clock there is no world outside.
