@@ -51,7 +51,7 @@ fn remote(modbus: &Modbus) -> Result<Remote, (String, String)> {
     if name.chars().any(char::is_control) {
         return Err(fail("name", "`name` is one line of text".to_owned()));
     }
-    Ok(Remote {
+    let remote = Remote {
         name,
         server: server.clone(),
         unit,
@@ -60,7 +60,15 @@ fn remote(modbus: &Modbus) -> Result<Remote, (String, String)> {
         on_loss: named(&OnLoss::ALL, modbus.on_loss.as_deref()).unwrap_or(OnLoss::Hold),
         word_order: named(&WordOrder::ALL, modbus.word_order.as_deref()),
         variables: modbus.map.clone(),
-    })
+    };
+    if modbus.map.is_empty() {
+        return Err(fail(
+            "server",
+            "no variable is read or written there: write `[modbus.map]`, and below it level = \"input-register 3\""
+                .to_owned(),
+        ));
+    }
+    Ok(remote)
 }
 
 /// A word that the project file may have, which has been checked.

@@ -7,7 +7,7 @@ mod settled;
 mod side;
 
 mod comparison;
-mod exchange;
+pub mod exchange;
 mod key;
 mod matching;
 mod parting;
@@ -15,7 +15,6 @@ pub mod passing;
 mod rest;
 mod same;
 
-pub use exchange::Change;
 pub use scan::{Faults, Input, Matched, Row, Step};
 pub use side::Side;
 

@@ -56,9 +56,12 @@ impl Server {
             command.args(["-c", script, &port.to_string()]).stderr(Stdio::null());
             command
         };
-        let is_there = python("import pymodbus").status().is_ok_and(|it| it.success());
+        let is_there = python("import pymodbus.server").status().is_ok_and(|it| it.success());
         if !is_there {
-            assert!(std::env::var_os("CI").is_none(), "no pymodbus: apt-get install python3-pymodbus");
+            assert!(
+                std::env::var_os("CI").is_none(),
+                "no pymodbus: apt-get install python3-pymodbus python3-serial-asyncio"
+            );
             println!("SKIPPED: no pymodbus");
             return None;
         }
@@ -171,7 +174,10 @@ fn a_server_that_does_not_answer_ends_a_run_that_needs_it() {
     has(&lost, &["error: connection: modbus pump (127.0.0.1:", "nobody listens there (on-loss = \"fault\")"]);
     let lost = folder.staunch(&format!("{run} --scans 2000 --message-format json")).out(3);
     has(&lost, &["\"kind\":\"connection\",\"connection\":\"modbus pump ("]);
-    folder.write("staunch.toml", format!("[[modbus]]\n{}\n", settings("hold")));
+    folder.write(
+        "staunch.toml",
+        format!("[[modbus]]\n{}\n[modbus.map]\nspeed = \"holding-register 3\"\n", settings("hold")),
+    );
     has(&folder.staunch(&format!("{run} --scans 100")).err(0), &["inputs stay as they are"]);
     // On the virtual clock there is no world outside.
     assert!(!folder.staunch("run main.st --scans 2").err(0).contains("pump"));
@@ -185,6 +191,7 @@ fn a_wrong_mapping_is_reported_at_its_line() {
         (server, "go = \"coil 1\"\nlevel = \"coil 3\"\n", "staunch.toml:5: `level`: it has more bits than one"),
         (server, "total = \"input-register 3\"\n", "say which comes first, word-order"),
         ("server = \"10.0.0.1\"", "", "staunch.toml:2: `10.0.0.1` is not an address and port"),
+        (server, "", "no variable is read or written there"),
         ("server = \"a:1\"\nunit = 300", "", "staunch.toml:3: `unit` is a number from 0 to 255"),
         ("server = \"a:1\"\nperiod = \"fast\"", "", "staunch.toml:3: `period`"),
         ("servre = \"a:1\"", "", "did you mean `server`?"),

@@ -3,7 +3,8 @@
 use super::advice::{Counting, Form, Rules};
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
 use super::list::Pitfall;
-use crate::compare::pair::{Change, Matched, Pair, Row};
+use crate::compare::pair::exchange::Change;
+use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::apart::Declared;
 use crate::compare::program::dependency::Dependencies;
 use crate::compare::program::scalar::{Instance, Role};

@@ -119,18 +119,22 @@ fn either<'n, 'p>(a: Option<Way<'n, 'p>>, b: Option<Way<'n, 'p>>) -> Option<Way<
     }
 }
 
-/// Whether a result may pass the range of a signed type of 32 or 64 bits.
+/// Whether a result may pass the range of a signed type of 32 or 64 bits; also the quotient of the least number and -1, which C
+/// leaves undefined for the remainder, too.
 fn may_overflow(known: &Known<'_, '_>, value: &Expr) -> bool {
-    let ExprKind::Apply(op @ (Op::Add | Op::Sub | Op::Mul | Op::Neg | Op::Abs), operands) = &value.kind else {
-        return false;
+    let ExprKind::Apply(op, operands) = &value.kind else { return false };
+    let Some(whole) = known.whole(value.ty) else { return false };
+    let exact = |op: Op| known.all(operands).and_then(|it| result(op, &it));
+    let passes = || match (op, operands.as_slice()) {
+        (Op::Add | Op::Sub | Op::Mul | Op::Neg | Op::Abs, _) => !exact(*op).is_some_and(|it| it.lies_in(whole)),
+        (Op::Div | Op::Mod | Op::DivOrZero | Op::ModOrZero, [a, b]) => {
+            let reaches = |it: &Expr, number: i128| known.of(it).is_none_or(|it| it.and((number, number)).is_some());
+            reaches(a, whole.0) && reaches(b, -1)
+        }
+        _ => false,
     };
-    let is_wide =
-        value.ty.elementary().is_some_and(|it| it.is_integer() && it.repr().size() >= 4 && it.repr().is_signed());
-    let fits = || {
-        let exact = known.all(operands).and_then(|it| result(*op, &it));
-        exact.zip(known.whole(value.ty)).is_some_and(|(exact, whole)| exact.lies_in(whole))
-    };
-    is_wide && !fits()
+    // More than 16 bits, and a sign.
+    whole.0 < i128::from(i16::MIN) && passes()
 }
 
 /// Whether it runs statements that are not in it.
