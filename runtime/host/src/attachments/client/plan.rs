@@ -139,7 +139,8 @@ fn start(place: &str) -> Result<Start, String> {
              input-register and holding-register, each with a number from 0 to 65535"
         )
     };
-    let (word, number) = place.trim().split_once(' ').ok_or_else(wrong)?;
+    let is_line = !place.chars().any(char::is_control);
+    let (word, number) = place.trim().split_once(' ').filter(|_| is_line).ok_or_else(wrong)?;
     let table = TABLES.into_iter().find(|it| it.name() == word).ok_or_else(wrong)?;
     let (number, bit) = match number.trim().split_once('.') {
         Some((number, bit)) if !table.is_bits() => {
