@@ -114,7 +114,7 @@ fn mistakes_say_what_to_write() {
 fn the_map_carries_it() {
     let before = remote(&[("v0", "input-register 3"), ("v5", "coil 0")], Some(WordOrder::LowFirst));
     let text = format!("map\t1\nmachine\t64\t8\n{}\n", before.lines().join("\n"));
-    assert_eq!(Map::parse(&text).unwrap().remotes, [before.clone()]);
+    assert_eq!(Map::parse(&text).unwrap().remotes, std::slice::from_ref(&before));
     let twice = [before, remote(&[("%IW0", "coil 0")], None)];
     let wrong = |all: &[Remote]| check_remotes(all, &plant()).unwrap_err();
     assert_eq!(wrong(&twice).0, 0);
