@@ -243,7 +243,7 @@ pub struct Run {
     /// Modbus TCP server; may be repeated
     #[arg(long, value_name = "CONNECTION", requires = "realtime", value_parser = Connection::parse)]
     pub io: Vec<Connection>,
-    /// With --io or [[modbus]] of staunch.toml, what outputs do at the end and after a fault [default: zero]
+    /// With --io, or with Modbus servers in staunch.toml, what outputs do at the end and after a fault [default: zero]
     #[arg(long, value_name = "zero|hold", requires = "realtime", value_parser = AtEnd::parse)]
     pub io_stop: Option<AtEnd>,
 }
