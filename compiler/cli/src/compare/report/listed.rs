@@ -86,7 +86,9 @@ impl Report<'_> {
             None => "in the text".to_owned(),
         };
         match finding.pitfall {
-            Some(pitfall) => format!("reachable {when}: trap {}. {}", pitfall.number(), pitfall.sentence()),
+            Some(pitfall) => {
+                format!("reachable {when}: trap {}. {}", pitfall.number(), pitfall.sentence(self.dialects()))
+            }
             None => format!("differs {when}: {}", finding.reason(self.is_one_program())),
         }
     }

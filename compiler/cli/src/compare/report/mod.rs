@@ -18,6 +18,7 @@ use crate::compare::verdict::{Judged, Verdict, stimulus};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
 use rejection::Rejection;
+use staunch_frontend::Dialect;
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
 
@@ -41,6 +42,10 @@ impl Report<'_> {
     /// Whether both systems run the same text, or what was made of it here.
     fn is_one_program(&self) -> bool {
         self.args.against.is_none()
+    }
+
+    fn dialects(&self) -> [Dialect; 2] {
+        [self.args.from.dialect, self.args.to.dialect]
     }
 
     fn names(&self) -> [&'static str; 2] {
@@ -106,7 +111,7 @@ impl Report<'_> {
         }
         let mut text = format!("{from} and {to} cannot be compared: {}.\n", rejection.why);
         if let Some(pitfall) = rejection.pitfall {
-            let _ = writeln!(text, "Trap {}: {}", pitfall.number(), pitfall.sentence());
+            let _ = writeln!(text, "Trap {}: {}", pitfall.number(), pitfall.sentence(self.dialects()));
         }
         let _ = writeln!(text, "What to do: {}.", rejection.advice);
         output::print(text.as_bytes())?;
@@ -180,7 +185,7 @@ impl Report<'_> {
         let pitfall = Pitfall::numbered(9);
         let count =
             if self.renamed == 1 { "1 name changes".to_owned() } else { format!("{} names change", self.renamed) };
-        format!("Trap {} ({count}): {}\n", pitfall.number(), pitfall.sentence())
+        format!("Trap {} ({count}): {}\n", pitfall.number(), pitfall.sentence(self.dialects()))
     }
 
     fn rewritten(&self) -> String {

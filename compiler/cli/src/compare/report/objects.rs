@@ -131,7 +131,7 @@ impl Report<'_> {
 
     fn difference(&self, pair: &Pair, rows: &[Row], shortest: bool, cause: &Cause) -> String {
         let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
-        let sentence = cause.pitfall.map_or("null".to_owned(), |it| quoted(it.sentence()));
+        let sentence = cause.pitfall.map_or("null".to_owned(), |it| quoted(&it.sentence(self.dialects())));
         let advice = cause.pitfall.map_or("null".to_owned(), |it| {
             quoted(&it.advice(self.args.from.dialect, self.args.to.dialect, cause.counting(pair)))
         });

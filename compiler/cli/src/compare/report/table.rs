@@ -84,7 +84,7 @@ impl Report<'_> {
         match cause.pitfall {
             Some(pitfall) => {
                 let counter = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
-                let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence());
+                let _ = writeln!(text, "Trap {}{counter}: {}", pitfall.number(), pitfall.sentence(self.dialects()));
                 let _ = writeln!(
                     text,
                     "What to do: {}",

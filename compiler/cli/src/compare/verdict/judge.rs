@@ -86,7 +86,12 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
             let of = cause.counter.as_ref().map_or_else(String::new, |it| format!(" (`{it}`)"));
             let trap = cause.pitfall.map_or_else(String::new, |it| {
                 let advice = it.advice(args.from.dialect, args.to.dialect, counting);
-                format!(". Trap {}{of}: {} What to do: {}", it.number(), it.sentence(), advice.trim_end_matches('.'))
+                format!(
+                    ". Trap {}{of}: {} What to do: {}",
+                    it.number(),
+                    it.sentence([args.from.dialect, args.to.dialect]),
+                    advice.trim_end_matches('.')
+                )
             });
             let place = match names.is_empty() {
                 true => "where one faults and the other continues".to_owned(),

@@ -1,26 +1,29 @@
 //! The pitfalls by their numbers, and what each says.
 
+use staunch_frontend::Dialect;
+
 /// One of the pitfalls of `docs/compare.md`, by its number less one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Pitfall(usize);
 
+/// In brackets, what is said where one of the systems before the stroke is compared.
 const PITFALLS: [&str; 20] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
-    "Past PV: the count of CSCAPE stays at PV, and so does that of a CTU of CODESYS and TwinCAT with `ctu-stop-at-pv = true`; the others continue to count. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
-    "CTD at 0: IEC, S7 and Logix go negative; CSCAPE and CODESYS stay.",
+    "Past PV: [cscape|the count of CSCAPE stays at PV; ][codesys|the count of a CTU of CODESYS and TwinCAT stays at PV with `ctu-stop-at-pv = true`; ]others continue to count. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
+    "CTD at 0: [iec|IEC goes negative; ][siemens|S7 goes negative; ][logix|Logix goes negative; ][cscape|CSCAPE stays at 0; ][codesys|CODESYS stays at 0; ]",
     "Logix CTD: DN is TRUE while ACC >= PRE, so it drops when done; it has no load input.",
     "Input already TRUE at start-up: Logix does not count it, the others do.",
-    "Input still TRUE after a reset: Logix counts one when the reset goes, CSCAPE continues to count, IEC, S7 and CODESYS do not count.",
-    "Limits: IEC, S7 and CODESYS saturate; Logix wraps with OV/UN.",
-    "Widths: INT, WORD, DINT. `CV < 0` is never TRUE in CODESYS; -1 written to a WORD preset is 65535.",
+    "Input still TRUE after a reset: [logix|Logix counts one when the reset goes; ][cscape|CSCAPE continues to count; ][iec|IEC does not count; ][siemens|S7 does not count; ][codesys|CODESYS does not count; ][openplc openplc4|OPENPLC does not count; ]",
+    "Limits: [iec|IEC saturates; ][siemens|S7 saturates; ][codesys|CODESYS saturates; ][logix|Logix wraps with OV/UN; ]",
+    "Widths: INT, WORD, DINT. [codesys|`CV < 0` is never TRUE in CODESYS; -1 written to a WORD preset is 65535. ]",
     "Pin names R/LD against RESET/LOAD: positional calls survive a move, named ones do not.",
     "PV lowered under CV: Q drops on CSCAPE, holds elsewhere.",
-    "Restart: Logix keeps all, and so does CODESYS over STOP -> RUN; else IEC, S7 and CODESYS restart at 0 unless the instance is RETAIN; CSCAPE needs R_CTU/R_CTD and a RETAIN RCV.",
+    "Restart: [logix|Logix keeps all; ][codesys|CODESYS keeps all over STOP -> RUN; ][cscape|CSCAPE needs R_CTU/R_CTD and a RETAIN RCV; ]else what is not RETAIN starts anew.",
     "`c(R := done); done := c.Q;` loses a call on CSCAPE, an edge of a CTUD's other input, and an edge when PV moves.",
     "DN of Logix is evaluated only while the rung is TRUE; Q of the others in every call.",
     "The guard `CD := pulse AND c.CV > 0` makes an edge of its own when CV leaves 0.",
-    "OPENPLC, before and from v4.1, stops at PV and at 0: `CV > PV` never holds, as on CSCAPE, and no count goes below 0.",
-    "F_TRIG called first with CLK FALSE: OPENPLC sees an edge, the others do not.",
+    "OPENPLC, before and from v4.1, stops at PV and at 0: `CV > PV` never holds, and no count goes below 0.",
+    "F_TRIG called first with CLK FALSE: OPENPLC before December 2024 sees an edge, the others do not.",
     "CD: OPENPLC4 (OpenPLC from v4.1, Editor 4.2.11 too) counts down when the input falls, the others when it rises.",
     "Both edges of a CTUD in one call: OPENPLC4 counts up, then down, so at PV it counts down; on the others CV stays.",
     "TON, TOF and TP on OPENPLC, before and from v4.1, see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
@@ -56,7 +59,22 @@ impl Pitfall {
         (0..PITFALLS.len()).map(Self).filter(|it| ![Self::FIRST_FALL, Self::LATER_CALL].contains(it))
     }
 
-    pub fn sentence(self) -> &'static str {
-        PITFALLS[self.0]
+    /// What it says of two systems.
+    pub fn sentence(self, systems: [Dialect; 2]) -> String {
+        let mut text = String::new();
+        for part in PITFALLS[self.0].split_inclusive(['[', ']']) {
+            match part.strip_suffix(']') {
+                Some(clause) => {
+                    let (names, clause) = clause.split_once('|').unwrap_or(("", clause));
+                    let is_of = |it: &str| systems.iter().any(|system| system.name() == it);
+                    text += if names.split(' ').any(is_of) { clause } else { "" };
+                }
+                None => text += part.trim_end_matches('['),
+            }
+        }
+        match text.trim_end().strip_suffix(';') {
+            Some(clauses) => format!("{clauses}."),
+            None => text.trim_end().to_owned(),
+        }
     }
 }

@@ -97,7 +97,8 @@ fn every_pitfall_says_what_to_do() {
     for (pitfall, number) in Pitfall::all().zip(1..) {
         assert_eq!(pitfall.number(), number);
         let advice = pitfall.advice(Dialect::Iec, Dialect::Cscape, counting(Form::Up));
-        assert!(pitfall.sentence().ends_with('.') && advice.ends_with('.'), "{number}");
+        let sentence = pitfall.sentence([Dialect::Iec, Dialect::Cscape]);
+        assert!(sentence.ends_with('.') && !sentence.contains(['[', ']', '|']) && advice.ends_with('.'), "{number}");
         let reset = pitfall.advice(Dialect::Iec, Dialect::Codesys, counting(Form::Up));
         let both = pitfall.advice(Dialect::Iec, Dialect::Logix, counting(Form::UpDown));
         assert!(!both.contains("CTU(") && !both.contains("CTD("), "a CTUD is no CTU: {both}");
