@@ -7,7 +7,7 @@ mod texts;
 
 pub use form::{Counting, Form, Rules};
 
-use super::list::Pitfall;
+use super::list::{Pitfall, said_of};
 use form::Advice;
 use staunch_frontend::Dialect::{self, Codesys, Cscape, Iec, Logix, Openplc, Openplc4, Siemens};
 use texts::{BLOCKS, FALLING, RISES, TO_LOGIX};
@@ -30,7 +30,7 @@ impl Pitfall {
             let own = own::text(counting).filter(|_| is_of_counting);
             return own.unwrap_or_else(|| OWN.to_owned());
         }
-        let text = texts.join(" ");
+        let text = said_of([from, to], &texts.join(" "));
         match to {
             Cscape | Codesys => text.replace("R := ", "RESET := ").replace("LD := ", "LOAD := "),
             Iec | Openplc | Openplc4 | Logix | Siemens => text,

@@ -61,20 +61,26 @@ impl Pitfall {
 
     /// What it says of two systems.
     pub fn sentence(self, systems: [Dialect; 2]) -> String {
-        let mut text = String::new();
-        for part in PITFALLS[self.0].split_inclusive(['[', ']']) {
-            match part.strip_suffix(']') {
-                Some(clause) => {
-                    let (names, clause) = clause.split_once('|').unwrap_or(("", clause));
-                    let is_of = |it: &str| systems.iter().any(|system| system.name() == it);
-                    text += if names.split(' ').any(is_of) { clause } else { "" };
-                }
-                None => text += part.trim_end_matches('['),
-            }
-        }
+        let text = said_of(systems, PITFALLS[self.0]);
         match text.trim_end().strip_suffix(';') {
             Some(clauses) => format!("{clauses}."),
             None => text.trim_end().to_owned(),
         }
     }
+}
+
+/// A text without what is in brackets for systems that are not compared: `[iec siemens|…]`.
+pub fn said_of(systems: [Dialect; 2], text: &str) -> String {
+    let mut said = String::new();
+    for part in text.split_inclusive(['[', ']']) {
+        match part.strip_suffix(']') {
+            Some(clause) => {
+                let (names, clause) = clause.split_once('|').unwrap_or(("", clause));
+                let is_of = |it: &str| systems.iter().any(|system| system.name() == it);
+                said += if names.split(' ').any(is_of) { clause } else { "" };
+            }
+            None => said += part.trim_end_matches('['),
+        }
+    }
+    said
 }

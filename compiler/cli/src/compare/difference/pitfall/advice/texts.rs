@@ -153,8 +153,10 @@ pub const BLOCKS: &[Advice] = &[
         &[11],
         &[Iec, Siemens, Codesys, Openplc, Openplc4, Cscape, Logix],
         &[Iec, Siemens, Codesys, Openplc, Openplc4, Cscape, Logix],
-        "Declare RETAIN what both are to keep, also in the program that moves (on CSCAPE R_CTU or R_CTD with a RETAIN RCV); CSCAPE, \
-         IEC, OPENPLC and S7 have no variable that only STOP -> RUN keeps. Logix keeps all.",
+        "Declare RETAIN what both are to keep, also in the program that moves[cscape| (on CSCAPE R_CTU or R_CTD with a RETAIN RCV)].\
+         [cscape| CSCAPE has no variable that only STOP -> RUN keeps.][iec| IEC has no variable that only STOP -> RUN keeps.]\
+         [openplc openplc4| OPENPLC has no variable that only STOP -> RUN keeps.]\
+         [siemens| S7 has no variable that only STOP -> RUN keeps.][logix| Logix keeps all.]",
     ).of(&[]),
 ];
 
