@@ -162,12 +162,16 @@ impl Worker {
 
     /// Asks for all inputs, and writes all outputs. The last turn writes only.
     fn turn(&mut self, scan: &mut u64, outputs: &mut Vec<u64>, is_last: bool) -> Result<(), Trouble> {
-        if !is_last && !self.plan.reads.is_empty() {
-            let mut all = Vec::new();
+        let mut inputs = Vec::new();
+        if !is_last {
             for at in 0..self.plan.reads.len() {
-                self.ask(|wire, plan, unit| wire.read(unit, &plan.reads[at], &mut all))?;
+                self.ask(|wire, plan, unit| wire.read(unit, &plan.reads[at], &mut inputs))?;
             }
-            self.shared.exchange.write(&all);
+        }
+        // While something is lost, inputs are what that makes of them until a whole turn is answered.
+        let was_lost = self.lost.is_some();
+        if !was_lost {
+            self.shared.exchange.write(&inputs);
         }
         self.shared.exchange.see_newer(*scan, |shown| {
             *scan = shown.scan;
@@ -178,6 +182,9 @@ impl Worker {
             for at in 0..self.plan.writes.len() {
                 self.ask(|wire, plan, unit| wire.write(unit, &plan.writes[at], outputs))?;
             }
+        }
+        if was_lost {
+            self.shared.exchange.write(&inputs);
         }
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::{PLANT, Plant, built, until};
 use crate::{Folder, has};
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// What it reads is copied to what it writes; `lost` is what it reads where nobody answers.
@@ -67,6 +67,7 @@ impl Server {
         }
         let mut child = python(SERVER).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
         let (asks, says) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
+        until("pymodbus listens", || TcpStream::connect(("127.0.0.1", port)).is_ok());
         Some(Self { child, asks, says })
     }
 
@@ -181,6 +182,24 @@ fn a_server_that_does_not_answer_ends_a_run_that_needs_it() {
     has(&folder.staunch(&format!("{run} --scans 100")).err(0), &["inputs stay as they are"]);
     // On the virtual clock there is no world outside.
     assert!(!folder.staunch("run main.st --scans 2").err(0).contains("pump"));
+}
+
+/// A server that refuses what is written to it is lost, too: inputs that are to be safe then do not come and go.
+#[test]
+fn a_refused_request_is_a_loss() {
+    let port = free_port();
+    let Some(mut server) = Server::start(port) else { return };
+    server.ask("set ir 3 7");
+    let settings = format!("server = \"127.0.0.1:{port}\"\nunit = 9\nperiod = \"2ms\"\non-loss = \"safe\"");
+    let folder =
+        project("io_client_refused", &settings, "level = \"input-register 3\"\nspeed = \"holding-register 300\"\n");
+    let run = "run main.st --realtime --cycle 2ms --scans 400 --trace trace.csv --vars level";
+    let said = folder.staunch(run).err(0);
+    has(&said, &["the server refuses holding-register 300 to 300: illegal data address (2); inputs are 0 and FALSE"]);
+    let trace = folder.read("trace.csv");
+    let last: Vec<&str> = trace.lines().rev().take(200).collect();
+    assert!(last.iter().all(|it| it.ends_with(",0")), "{last:?}");
+    server.end();
 }
 
 #[test]

@@ -66,6 +66,12 @@ struct Placed {
     point: usize,
 }
 
+impl Placed {
+    fn meets(&self, other: &Self) -> bool {
+        self.table == other.table && self.first < other.first + other.count && other.first < self.first + self.count
+    }
+}
+
 /// The first place of a variable, as it is written: `holding-register 10`, `input-register 3.7`.
 struct Start {
     table: Table,
@@ -110,10 +116,7 @@ impl Plan {
                     plan.named_inputs.push((name.clone(), point.offset(), point.bit()));
                     reads.push(placed);
                 } else {
-                    let other = |it: &&Placed| {
-                        it.table == placed.table && it.first < number && placed.first < it.first + it.count
-                    };
-                    if writes.iter().any(|it: &Placed| other(&it)) {
+                    if writes.iter().any(|it: &Placed| it.meets(&placed)) {
                         return Err(fail(format!("another variable is written to {place}, too")));
                     }
                     writes.push(placed);
