@@ -125,7 +125,10 @@ fn relative(path: &Path, from: &Path) -> PathBuf {
 
 fn read(path: &Path) -> Result<Project, String> {
     let fail = |what: String| format!("{}: {what}", shown(path));
-    let metadata = std::fs::metadata(path).map_err(|it| fail(it.to_string()))?;
+    let metadata = std::fs::metadata(path).map_err(|it| match path.is_symlink() {
+        true => fail(format!("this is a link, and what it leads to cannot be read: {it}")),
+        false => fail(it.to_string()),
+    })?;
     if !metadata.is_file() {
         return Err(fail("this is a folder, a pipe or a device, and not a file".to_owned()));
     }

@@ -217,6 +217,21 @@ fn what_takes_the_difference_away_is_blamed() {
             ("iec", "openplc"),
             "Trap 19 (`t2`)",
         ),
+        (
+            "kept_timer",
+            "t : TON; k : INT;",
+            "t(IN := s, PT := T#20ms); k := 2; q := t.Q AND k > 1;",
+            ("iec", "codesys"),
+            "Trap 11 (`t`)",
+        ),
+        ("kept_edge", "e : R_TRIG;", "e(CLK := s); q := e.Q;", ("codesys", "siemens"), "Trap 11 (`e`)"),
+        (
+            "kept_timer_beside_a_counter",
+            "t : TOF; c : CTU;",
+            "t(IN := s, PT := T#20ms); c(CU := s, PV := 3); q := t.Q OR c.Q;",
+            ("iec", "logix"),
+            "Trap 11 (`t`)",
+        ),
         ("two_falls", "a, b : F_TRIG;", "a(CLK := s); b(CLK := s); q := b.Q;", ("iec", "openplc"), "Trap 16 (`b`)"),
         (
             "timer_and_counter",

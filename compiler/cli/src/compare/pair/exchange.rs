@@ -19,6 +19,8 @@ pub enum Change {
     Block(usize),
     /// What events leave of these.
     Kept(Vec<Matched>),
+    /// What events leave of a block, by its position on each side.
+    KeptBlock(Matched),
 }
 
 impl Pair {
@@ -43,7 +45,7 @@ impl Pair {
         match change {
             Change::Counter(at) => self.counters.get(*at).map(block),
             Change::Block(at) => self.blocks.get(*at).map(block),
-            Change::Kept(_) => None,
+            Change::Kept(_) | Change::KeptBlock(_) => None,
         }
     }
 
@@ -67,8 +69,12 @@ impl Pair {
                     let keeps = |at: usize| self.sides[1].keeps(event, other.offset + at);
                     machine.interpreter().restart_exchanged(&keeps);
                 }
-                if let Some(Change::Kept(all)) = change {
-                    all.iter().for_each(|it| self.keep_as_other(*it, event, &before, &mut machine));
+                match change {
+                    Some(Change::Kept(all)) => {
+                        all.iter().for_each(|it| self.keep_as_other(*it, event, &before, &mut machine));
+                    }
+                    Some(Change::KeptBlock(it)) => self.keep_block_as_other(*it, event, &before, &mut machine),
+                    Some(Change::Counter(_) | Change::Block(_)) | None => {}
                 }
             }
             for input in &self.inputs {
@@ -87,6 +93,24 @@ impl Pair {
         let is_kept = self.sides[1].keeps(event, other.offset);
         let source = if is_kept { before } else { self.sides[0].initial.as_slice() };
         machine.write(own.offset, &source[own.offset..own.offset + own.size]);
+    }
+}
+
+impl Pair {
+    /// Whether an event keeps anything of a block, on each side.
+    pub fn keeps_block(&self, matched: Matched, event: Event) -> [bool; 2] {
+        [0, 1].map(|side: usize| {
+            let block = &self.sides[side].scalars.blocks[matched[side]];
+            (0..block.block.info().size).any(|at| self.sides[side].keeps(event, block.offset + at))
+        })
+    }
+
+    fn keep_block_as_other(&self, matched: Matched, event: Event, before: &[u8], machine: &mut Interpreted<'_>) {
+        let own = &self.sides[0].scalars.blocks[matched[0]];
+        let is_kept = self.keeps_block(matched, event)[1];
+        let source = if is_kept { before } else { self.sides[0].initial.as_slice() };
+        let range = own.offset..own.offset + own.block.info().size;
+        machine.interpreter().state_mut()[range.clone()].copy_from_slice(&source[range]);
     }
 }
 

@@ -199,42 +199,68 @@ fn shown(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> O
     Some(Cause { counter: Some(found.path), pitfall: Some(found.pitfall) })
 }
 
-/// The counters and other blocks that part by themselves and decide the differences, and the variables that one side alone
-/// has kept.
+/// The blocks and variables that one side alone has kept, and the counters and other blocks that part by themselves, of those that
+/// decide the differences.
 fn suspects(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Vec<Suspect> {
-    let mut found = Vec::new();
-    for (counter, own) in habits.iter().enumerate() {
-        let instance = pair.instances(counter)[0];
-        if relevant.has(instance.field, &HashSet::new())
-            && let Some(Parting { row, pitfall, .. }) = parting(pair, rows, counter, *own)
-        {
-            found.push(Suspect { row, path: instance.path.clone(), pitfall, change: Change::Counter(counter) });
-        }
-    }
-    for block in 0..pair.blocks.len() {
-        let instance = &pair.sides[0].scalars.blocks[pair.blocks[block][0]];
-        if relevant.has(instance.field, &HashSet::new())
-            && let Some((row, pitfall)) = other_block(pair, rows, block)
-        {
-            found.push(Suspect { row, path: instance.path.clone(), pitfall, change: Change::Block(block) });
-        }
-    }
-    for (row, _) in rows.iter().enumerate().filter(|it| it.1.event.is_some()) {
-        let kept = kept_by_one(pair, rows, row, relevant);
-        let mut groups: Vec<(Option<Declared>, Vec<Matched>)> = Vec::new();
-        for it in kept {
-            let declared = pair.declared(0, it);
-            match groups.iter_mut().find(|group| group.0 == declared) {
-                Some(group) => group.1.push(it),
-                None => groups.push((declared, vec![it])),
-            }
-        }
-        for (_, group) in groups {
-            let path = pair.path(group[0]).to_owned();
-            found.push(Suspect { row, path, pitfall: Pitfall::RESTART, change: Change::Kept(group) });
-        }
-    }
+    let events = || (0..rows.len()).filter(|it| rows[*it].event.is_some());
+    let mut found: Vec<Suspect> = events().flat_map(|it| kept_blocks(pair, rows, it, relevant)).collect();
+    found.extend(parted_blocks(pair, rows, habits, relevant));
+    found.extend(events().flat_map(|it| kept_variables(pair, rows, it, relevant)));
     found
+}
+
+fn kept_blocks(pair: &Pair, rows: &[Row], row: usize, relevant: &Relevant) -> Vec<Suspect> {
+    let all = pair.blocks.iter().chain(&pair.counters).filter(|it| is_kept_by_one(pair, rows, row, **it));
+    let suspect = |it: &Matched| {
+        let instance = &pair.sides[0].scalars.blocks[it[0]];
+        let (path, pitfall, change) = (instance.path.clone(), Pitfall::RESTART, Change::KeptBlock(*it));
+        relevant.has(instance.field, &HashSet::new()).then_some(Suspect { row, path, pitfall, change })
+    };
+    all.filter_map(suspect).collect()
+}
+
+fn parted_blocks(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Vec<Suspect> {
+    let decides = |it: &Instance| relevant.has(it.field, &HashSet::new());
+    let counter = |(number, own): (usize, &Habits)| {
+        let instance = pair.instances(number)[0];
+        let Parting { row, pitfall, .. } = decides(instance).then(|| parting(pair, rows, number, *own))??;
+        Some(Suspect { row, path: instance.path.clone(), pitfall, change: Change::Counter(number) })
+    };
+    let other = |(number, block): (usize, &Matched)| {
+        let instance = &pair.sides[0].scalars.blocks[block[0]];
+        let (row, pitfall) = decides(instance).then(|| other_block(pair, rows, number))??;
+        Some(Suspect { row, path: instance.path.clone(), pitfall, change: Change::Block(number) })
+    };
+    let counters = habits.iter().enumerate().filter_map(counter);
+    counters.chain(pair.blocks.iter().enumerate().filter_map(other)).collect()
+}
+
+/// The elements and members of one variable are one suspect.
+fn kept_variables(pair: &Pair, rows: &[Row], row: usize, relevant: &Relevant) -> Vec<Suspect> {
+    let mut groups: Vec<(Option<Declared>, Vec<Matched>)> = Vec::new();
+    for it in kept_by_one(pair, rows, row, relevant) {
+        let declared = pair.declared(0, it);
+        match groups.iter_mut().find(|group| group.0 == declared) {
+            Some(group) => group.1.push(it),
+            None => groups.push((declared, vec![it])),
+        }
+    }
+    let suspect = |group: Vec<Matched>| {
+        let path = pair.path(group[0]).to_owned();
+        Suspect { row, path, pitfall: Pitfall::RESTART, change: Change::Kept(group) }
+    };
+    groups.into_iter().map(|it| suspect(it.1)).collect()
+}
+
+/// Whether one side alone keeps anything of a block in the event of a row, and it is not as at the start there.
+fn is_kept_by_one(pair: &Pair, rows: &[Row], at: usize, block: Matched) -> bool {
+    let Some(event) = rows[at].event else { return false };
+    let keeps = pair.keeps_block(block, event);
+    let side = usize::from(keeps[1]);
+    let before = at.checked_sub(1).map_or(pair.start()[side], |it| rows[it].states[side].as_slice());
+    let instance = &pair.sides[side].scalars.blocks[block[side]];
+    let bytes = instance.offset..instance.offset + instance.block.info().size;
+    keeps[0] != keeps[1] && before[bytes.clone()] != pair.start()[side][bytes]
 }
 
 /// Variables that decide the differences, which one side alone has kept in the event of a row: there they had another value
