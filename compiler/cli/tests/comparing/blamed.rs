@@ -224,6 +224,13 @@ fn what_takes_the_difference_away_is_blamed() {
             ("iec", "codesys"),
             "Trap 11 (`t`)",
         ),
+        (
+            "kept_fall",
+            "e : F_TRIG; r : R_TRIG;",
+            "e(CLK := s); r(CLK := s); q := e.Q;",
+            ("iec", "codesys"),
+            "Trap 11 (`e`)",
+        ),
         ("kept_edge", "e : R_TRIG;", "e(CLK := s); q := e.Q;", ("codesys", "siemens"), "Trap 11 (`e`)"),
         (
             "kept_timer_beside_a_counter",

@@ -188,13 +188,13 @@ struct Suspect {
     change: Change,
 }
 
-/// Of several that may be the cause, the first with which nothing of what is looked at differs any more where it alone is as
-/// on the other system.
+/// Of those that may be the cause, the first with which nothing of what is looked at differs any more where it alone is as on the
+/// other system.
 fn shown(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Option<Cause> {
     let mut all = suspects(pair, rows, habits, relevant);
     all.sort_by_key(|it| it.row);
-    let several = all.len() > 1 && !relevant.found.is_empty();
-    let mut tried = all.into_iter().filter(|_| several).take(MAX_SUSPECTS);
+    let is_seen = !relevant.found.is_empty();
+    let mut tried = all.into_iter().filter(|_| is_seen).take(MAX_SUSPECTS);
     let found = tried.find(|it| pair.agrees_with(&it.change, rows, &relevant.found))?;
     Some(Cause { counter: Some(found.path), pitfall: Some(found.pitfall) })
 }
