@@ -129,7 +129,7 @@ fn what_the_other_system_has_not_is_said_at_its_declaration() {
     let out = difference(&format!("{} --from iec --to logix", path.display()));
     assert!(out.contains("hours.st:3: LOGIX does not have TON (`tick`): use TONR with an FBD_TIMER there"), "{out}");
     // Logix keeps every tag over a power cycle, so that the timer continues there.
-    assert!(out.contains("iec and logix differ after 2 scans:") && out.contains("Trap 11: Restart"), "{out}");
+    assert!(out.contains("iec and logix differ after 2 scans:") && out.contains("Trap 11 (`tick`): Restart"), "{out}");
 }
 
 #[test]
