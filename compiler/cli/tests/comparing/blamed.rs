@@ -239,6 +239,13 @@ fn what_takes_the_difference_away_is_blamed() {
             ("iec", "logix"),
             "Trap 11 (`t`)",
         ),
+        (
+            "lost_beside_a_counter",
+            "k : INT; l : BOOL; c : CTUD;",
+            "IF s AND k < 2 THEN k := k + 1; END_IF; l := l OR s; c(CU := NOT s, CD := l, RESET := s, LOAD := FALSE, PV := 1); q := k = 2 AND c.CV > 0;",
+            ("codesys", "iec"),
+            "Trap 11 (`k`)",
+        ),
         ("two_falls", "a, b : F_TRIG;", "a(CLK := s); b(CLK := s); q := b.Q;", ("iec", "openplc"), "Trap 16 (`b`)"),
         (
             "timer_and_counter",

@@ -3,7 +3,7 @@
 use super::advice::{Counting, Form, Rules};
 use super::classify::{Case, Habits, Kind, Pins, classify, counts_without_edge};
 use super::list::Pitfall;
-use crate::compare::pair::exchange::Change;
+use crate::compare::pair::exchange::{Change, Kept};
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::apart::Declared;
 use crate::compare::program::dependency::Dependencies;
@@ -189,14 +189,41 @@ struct Suspect {
 }
 
 /// Of those that may be the cause, the first with which nothing of what is looked at differs any more where it alone is as on the
-/// other system.
+/// other system; else the first of the fewest that do so together, of what is kept.
 fn shown(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Option<Cause> {
+    if relevant.found.is_empty() {
+        return None;
+    }
     let mut all = suspects(pair, rows, habits, relevant);
     all.sort_by_key(|it| it.row);
-    let is_seen = !relevant.found.is_empty();
-    let mut tried = all.into_iter().filter(|_| is_seen).take(MAX_SUSPECTS);
-    let found = tried.find(|it| pair.agrees_with(&it.change, rows, &relevant.found))?;
-    Some(Cause { counter: Some(found.path), pitfall: Some(found.pitfall) })
+    all.truncate(MAX_SUSPECTS);
+    let alone = all.iter().find(|it| pair.agrees_with(&it.change, rows, &relevant.found));
+    let found = alone.or_else(|| of_several(pair, rows, relevant, &all))?;
+    Some(Cause { counter: Some(found.path.clone()), pitfall: Some(found.pitfall) })
+}
+
+/// The first of those that have to be kept together.
+fn of_several<'s>(pair: &Pair, rows: &[Row], relevant: &Relevant, all: &'s [Suspect]) -> Option<&'s Suspect> {
+    let kept = |it: &&'s Suspect| matches!(it.change, Change::Kept(_));
+    let together = |some: &[&Suspect]| {
+        let all = some.iter().flat_map(|it| match &it.change {
+            Change::Kept(all) => all.as_slice(),
+            Change::Counter(_) | Change::Block(_) => &[],
+        });
+        pair.agrees_with(&Change::Kept(all.copied().collect()), rows, &relevant.found)
+    };
+    let mut needed: Vec<&Suspect> = all.iter().filter(kept).collect();
+    if !together(&needed) {
+        return None;
+    }
+    for at in (0..needed.len()).rev() {
+        let mut fewer = needed.clone();
+        fewer.remove(at);
+        if together(&fewer) {
+            needed = fewer;
+        }
+    }
+    needed.first().copied()
 }
 
 /// The blocks and variables that one side alone has kept, and the counters and other blocks that part by themselves, of those that
@@ -213,7 +240,7 @@ fn kept_blocks(pair: &Pair, rows: &[Row], row: usize, relevant: &Relevant) -> Ve
     let all = pair.blocks.iter().chain(&pair.counters).filter(|it| is_kept_by_one(pair, rows, row, **it));
     let suspect = |it: &Matched| {
         let instance = &pair.sides[0].scalars.blocks[it[0]];
-        let (path, pitfall, change) = (instance.path.clone(), Pitfall::RESTART, Change::KeptBlock(*it));
+        let (path, pitfall, change) = (instance.path.clone(), Pitfall::RESTART, Change::Kept(vec![Kept::Block(*it)]));
         relevant.has(instance.field, &HashSet::new()).then_some(Suspect { row, path, pitfall, change })
     };
     all.filter_map(suspect).collect()
@@ -247,7 +274,8 @@ fn kept_variables(pair: &Pair, rows: &[Row], row: usize, relevant: &Relevant) ->
     }
     let suspect = |group: Vec<Matched>| {
         let path = pair.path(group[0]).to_owned();
-        Suspect { row, path, pitfall: Pitfall::RESTART, change: Change::Kept(group) }
+        let all = group.into_iter().map(Kept::Variable).collect();
+        Suspect { row, path, pitfall: Pitfall::RESTART, change: Change::Kept(all) }
     };
     groups.into_iter().map(|it| suspect(it.1)).collect()
 }
@@ -255,11 +283,10 @@ fn kept_variables(pair: &Pair, rows: &[Row], row: usize, relevant: &Relevant) ->
 /// Whether one side alone keeps anything of a block in the event of a row, and it is not as at the start there.
 fn is_kept_by_one(pair: &Pair, rows: &[Row], at: usize, block: Matched) -> bool {
     let Some(event) = rows[at].event else { return false };
-    let keeps = pair.keeps_block(block, event);
+    let keeps = pair.keeps(Kept::Block(block), event);
     let side = usize::from(keeps[1]);
     let before = at.checked_sub(1).map_or(pair.start()[side], |it| rows[it].states[side].as_slice());
-    let instance = &pair.sides[side].scalars.blocks[block[side]];
-    let bytes = instance.offset..instance.offset + instance.block.info().size;
+    let bytes = pair.bytes(Kept::Block(block), side);
     keeps[0] != keeps[1] && before[bytes.clone()] != pair.start()[side][bytes]
 }
 
