@@ -1,8 +1,8 @@
 //! Which pitfalls cannot happen to a counter.
 
-use super::cause::kind;
 use super::classify::{Habits, goes_below, is_openplc};
 use super::list::Pitfall;
+use super::parting::kind;
 use crate::compare::pair::Pair;
 use crate::compare::program::scalar::Instance;
 use crate::compare::program::usage::{self, Usage};
