@@ -38,7 +38,7 @@ fn a_case_as_one_file_is_the_same_program() {
 fn is_same(case: &Case) -> Option<Result<(), String>> {
     let (sources, compilation) = case.compile();
     let program = compilation.program?;
-    let converted = staunch_frontend::compile(&sources.as_one_file("all.st"), &case.settings().options);
+    let converted = staunch_frontend::compile(&sources.as_one_file("all.st", None), &case.settings().options);
     let Some(other) = converted.program else {
         let first = converted.diagnostics.iter().find(|it| it.severity == staunch_frontend::Severity::Error);
         return Some(Err(first.map_or_else(String::new, |it| it.message.clone())));

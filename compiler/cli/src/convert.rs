@@ -3,7 +3,7 @@
 use crate::args::Convert;
 use crate::session::Session;
 use crate::{REJECTED, apart, input, output};
-use staunch_frontend::{Compilation, Severity, Sources};
+use staunch_frontend::{Compilation, Dialect, Severity, Sources};
 use staunch_ir::{Program, print_without_places};
 use std::collections::HashSet;
 
@@ -13,7 +13,9 @@ pub fn convert(session: &Session, args: &Convert) -> Result<u8, String> {
     let path = &args.output;
     apart::output(session, path)?;
     output::check(path)?;
-    let converted = session.sources.as_one_file(&input::shown(path));
+    let dialect = session.dialect()?;
+    let named = (dialect != Dialect::default()).then_some(dialect.name());
+    let converted = session.sources.as_one_file(&input::shown(path), named);
     let compilation = session.compile_to_build(&converted)?;
     let is_same = compilation.program.as_ref().is_some_and(|it| is_same(it, program));
     if !is_same {

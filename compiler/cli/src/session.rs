@@ -233,6 +233,11 @@ impl Session {
         Ok(staunch_frontend::compile(sources, &options).program)
     }
 
+    /// The dialect of sources that name none.
+    pub fn dialect(&self) -> Result<Dialect, String> {
+        Ok(options(&self.common, &self.project)?.dialect)
+    }
+
     /// Whether an option is on, by the project file.
     pub fn is_on(&self, option: staunch_runtime::BlockOption) -> Result<bool, String> {
         Ok(options(&self.common, &self.project)?.is_on(option))

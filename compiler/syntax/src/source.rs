@@ -458,9 +458,10 @@ impl Sources {
     }
 
     /// The program's own files as one of plain text, each below a line that names it where there are several; libraries stay
-    /// as they are. What a project defines for its files, and what it says of its device, is not a part of that.
+    /// as they are. What a project defines for its files, and what it says of its device, is not a part of that. The text
+    /// begins with the `dialect` where none of the files names one.
     #[must_use]
-    pub fn as_one_file(&self, path: &str) -> Self {
+    pub fn as_one_file(&self, path: &str, dialect: Option<&str>) -> Self {
         let (own, others): (Vec<_>, Vec<_>) = self.files.iter().partition(|it| !it.is_of_library());
         let mut text = String::new();
         let mut dialects = Vec::new();
@@ -478,6 +479,8 @@ impl Sources {
                 text.push('\n');
             }
         }
+        let unsaid = dialect.filter(|_| !own.iter().any(|it| it.text.contains("{dialect ")));
+        let text = unsaid.map(|it| format!("{{dialect '{it}'}}\n")).unwrap_or_default() + &text;
         let files = core::iter::once(Source::new(path, text)).chain(others.into_iter().cloned());
         Self { files: files.collect(), defined: Vec::new(), device: None, ..self.clone() }
     }

@@ -62,6 +62,10 @@ fn a_project_of_twincat_is_written_as_structured_text() {
     has(&folder.read("line.st"), &["// POUs/MAIN.TcPOU\n", "parts(CU := go, PV := 5);", "END_FUNCTION_BLOCK"]);
     assert_eq!(folder.staunch(&format!("run line.st {run}")).out(0), before);
     assert_eq!(folder.staunch("convert Line.plcproj -o -").out(0), folder.read("line.st"));
+    // A file in the dialect that the command line names does not depend on it any more.
+    folder.write("words.st", "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE); w := c.CV; END_PROGRAM\n");
+    folder.staunch("convert words.st -o named.st --dialect codesys").out(0);
+    folder.staunch("check named.st").out(0);
     // What is written is no source, and a program with a mistake is not written.
     has(&folder.staunch("convert line.st -o line.st").err(2), &["line.st"]);
     folder.write("wrong.st", "PROGRAM Main VAR n : INT; END_VAR n := m; END_PROGRAM");
