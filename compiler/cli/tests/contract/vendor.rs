@@ -86,7 +86,7 @@ fn what_files_say_beside_their_text_is_not_lost() {
         &said,
         &[
             "the program is not the same as one text",
-            "in line 2 of that text: `Line` is not declared",
+            "in line 3 of that text: `Line` is not declared",
             "nothing was written",
         ],
     );
