@@ -45,7 +45,7 @@ impl Project {
     /// The project file of `start` or of the nearest folder above it.
     pub fn find(start: &Path) -> Result<Option<Self>, String> {
         let start = start.canonicalize().unwrap_or_else(|_| start.to_owned());
-        // Whatever has that name: one that cannot be read is no reason to compile by other settings.
+        // Whatever has that name: where it cannot be read, compiling by other settings would be wrong.
         let found = start.ancestors().map(|it| it.join("staunch.toml")).find(|it| it.symlink_metadata().is_ok());
         found.map(|path| read(&path)).transpose()
     }

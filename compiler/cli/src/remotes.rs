@@ -2,7 +2,7 @@
 //! variables, and given to its map.
 
 use staunch_build::{Modbus, Project};
-use staunch_host::{Map, OnLoss, Remote, WordOrder, check_remotes, parse_duration};
+use staunch_host::{Map, OnLoss, Remote, WordOrder, check_remotes, is_address_and_port, parse_duration};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::time::Duration;
@@ -34,8 +34,7 @@ pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
 fn remote(modbus: &Modbus) -> Result<Remote, (String, String)> {
     let fail = |key: &str, text: String| (key.to_owned(), text);
     let server = &modbus.server;
-    let parts = server.rsplit_once(':').filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
-    if parts.is_none() || server.chars().any(char::is_control) {
+    if !is_address_and_port(server) {
         let text = format!("`{server}` is not an address and port: write, for example, server = \"192.168.0.20:502\"");
         return Err(fail("server", text));
     }

@@ -192,8 +192,8 @@ fn retained<'s>(wanted: &[(&'static str, &[&'static str])], kind: VarKind, at: S
     VarBlock { kind, retain: Some(at), ..variables(wanted, at) }
 }
 
-/// The FUNCTION that starts the global instances, and its variables. `tells` where something reads `bInitRetains`,
-/// `keeps` where some global variables are RETAIN.
+/// The FUNCTION that starts the global instances, and its variables. `tells`: whether something reads `bInitRetains`;
+/// `keeps`: whether some global variables are RETAIN.
 fn of_globals(at: Span, tells: bool, keeps: bool, addresses: Addresses<'_>) -> Vec<Item<'_>> {
     let ([_, flag], [_, kept]) = (STARTED, KEPT);
     let mut own = variables(&[(flag, &["BOOL"])], at);

@@ -118,6 +118,11 @@ impl<'p> Interpreter<'p> {
         }
     }
 
+    /// Whether what computes the exchanged block has given each pin a number of the pin's type.
+    pub fn exchange_fits(&self) -> bool {
+        self.exchange.as_ref().is_none_or(|it| it.fits)
+    }
+
     /// One scan of an instance. After an early end the state stays as it was at that point.
     pub fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Stop> {
         self.steps_left = self.budget;

@@ -53,7 +53,7 @@ impl Interval {
     }
 }
 
-/// What an operation has as its exact result, where each operand lies in a range.
+/// The range of an operation's exact result, from the ranges of its operands.
 pub(crate) fn of_operands(op: Op, operands: &[Expr], range: impl Fn(&Expr) -> Option<Range>) -> Option<Range> {
     let operands: Vec<Interval> = operands.iter().map(|it| range(it).map(Interval::new)).collect::<Option<_>>()?;
     Some(result(op, &operands)?.range)

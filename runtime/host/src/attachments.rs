@@ -25,7 +25,7 @@ mod mapping;
 
 pub(crate) use attachment::Ended;
 pub use client::{Mistake, check_remotes};
-pub use options::{AtEnd, Connection, Io};
+pub use options::{AtEnd, Connection, Io, is_address_and_port};
 
 use crate::map::Map;
 use crate::{Error, Machine};
@@ -65,7 +65,7 @@ impl Attachments {
         Ok(Self(all))
     }
 
-    /// An error where something is lost without which the run is not to go on.
+    /// An error where something is lost that the run must not continue without.
     pub fn before(&mut self, machine: &mut dyn Machine) -> Result<(), Error> {
         self.0.iter_mut().for_each(|it| it.before(machine));
         self.0.iter().find_map(|it| it.lost()).map_or(Ok(()), Err)

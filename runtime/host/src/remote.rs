@@ -16,7 +16,7 @@ pub struct Remote {
     pub timeout: Duration,
     pub on_loss: OnLoss,
     pub word_order: Option<WordOrder>,
-    /// A variable or an address, and what it is there: `input-register 3`.
+    /// A variable or an address, and its place on the server: `input-register 3`.
     pub variables: Vec<(String, String)>,
 }
 

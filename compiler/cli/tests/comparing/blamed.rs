@@ -255,6 +255,14 @@ fn what_takes_the_difference_away_is_blamed() {
             "Trap 19 (`t`)",
         ),
         (
+            // A count below 0 does not fit CODESYS' type: what it would be there decides nothing.
+            "lost_beside_a_count_below_0",
+            "c : CTD; was : BOOL;",
+            "q := was; c(CD := TRUE, LOAD := s, PV := 2); was := c.CV <= 0;",
+            ("codesys", "iec"),
+            "Trap 11 (`was`)",
+        ),
+        (
             "fall_and_counter",
             "c : CTD; e : F_TRIG;",
             "c(CD := s, LD := FALSE, PV := 4); e(CLK := NOT s); q := e.Q AND c.Q;",
@@ -267,4 +275,16 @@ fn what_takes_the_difference_away_is_blamed() {
         let (code, text) = OWN.compare(name, &source, &["--from", from, "--to", to, "--vars", "q,n"]);
         assert!(code == Some(1) && text.contains(blamed), "{name}: {text}");
     }
+}
+
+/// What an event has parted is shown, where it is not compared, too.
+#[test]
+fn a_variable_that_is_not_compared_is_not_said_to_be_the_same() {
+    let source = "PROGRAM p\nVAR_INPUT start, pulse : BOOL; END_VAR\nVAR_OUTPUT valve : BOOL; END_VAR\n\
+                  VAR dose : CTD; e : R_TRIG; busy : BOOL; END_VAR\ne(CLK := start); IF e.Q THEN busy := TRUE; END_IF;\n\
+                  dose(CD := pulse AND busy, LD := e.Q, PV := 2); IF dose.Q THEN busy := FALSE; END_IF; valve := busy;\nEND_PROGRAM\n";
+    let (code, text) = OWN.compare("uncompared", source, &["--from", "openplc", "--to", "codesys", "--vars", "valve"]);
+    let (_, after) = text.split_once("`busy` (retention").expect("it is listed");
+    let said = after.lines().nth(1).unwrap_or_default();
+    assert!(code == Some(1) && said.contains("reachable after 2 scans: trap 11"), "{text}");
 }

@@ -15,7 +15,7 @@ pub(crate) trait Attachment {
     fn before(&mut self, machine: &mut dyn Machine);
     /// Shows the outputs of a whole scan outside.
     fn after(&mut self, state: &[u8]);
-    /// What the run is not to go on without is lost.
+    /// The error where something is lost that the run must not continue without.
     fn lost(&self) -> Option<Error> {
         None
     }

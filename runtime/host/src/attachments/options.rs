@@ -49,12 +49,18 @@ impl Connection {
     }
 
     fn modbus(address: &str) -> Result<Self, String> {
-        let parts = address.rsplit_once(':').filter(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok());
-        match parts {
-            Some(_) => Ok(Self::Modbus(address.to_owned())),
-            None => Err(format!("`{address}` is not an address and port: write, for example, modbus:127.0.0.1:502")),
+        match is_address_and_port(address) {
+            true => Ok(Self::Modbus(address.to_owned())),
+            false => Err(format!("`{address}` is not an address and port: write, for example, modbus:127.0.0.1:502")),
         }
     }
+}
+
+/// Whether a text is of the form `HOST:PORT`, on one line. What the host's name means is known only when it is connected to.
+pub fn is_address_and_port(text: &str) -> bool {
+    let parts = text.rsplit_once(':');
+    parts.is_some_and(|(host, port)| !host.is_empty() && port.parse::<u16>().is_ok())
+        && !text.contains(char::is_control)
 }
 
 /// As on the command line.

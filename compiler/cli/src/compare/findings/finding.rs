@@ -13,7 +13,7 @@ use crate::compare::search::sighting::Subject;
 use crate::compare::search::trace::Trace;
 use crate::compare::search::world::World;
 use staunch_ir::Location;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Findings whose traces are made shorter; the others keep theirs.
 const MAX_SHRUNK: usize = 24;
@@ -157,7 +157,8 @@ impl Findings {
         }
         let all_seen = if outcome.found.is_some() { outcome.all_seen } else { outcome.complete };
         if all_seen && exact {
-            let is_open = |at: usize| pair.open.get(at / per_counter).is_some_and(|it| *it);
+            let unseen = self.not_compared(pair, world);
+            let is_open = |at: usize| pair.open.get(at / per_counter).is_some_and(|it| *it) || unseen.contains(&at);
             let undecided = self.all.iter_mut().enumerate().filter(|it| matches!(it.1.verdict, Verdict::Undecided));
             for (_, finding) in undecided.filter(|it| !is_open(it.0)) {
                 finding.verdict = Verdict::Impossible("every reachable state was seen".to_owned());
@@ -172,9 +173,36 @@ impl Findings {
         }
     }
 
+    /// Where those are in the list that the search does not look at: variables that are not compared.
+    fn not_compared(&self, pair: &Pair, world: &World) -> HashSet<usize> {
+        let variable = |it: &Subject| match it {
+            Subject::Variable(it) | Subject::Parted(it) | Subject::Output(it) => Some(*it),
+            Subject::Computed(at) => Some(world.computed[*at].variable),
+            Subject::Counter(_) | Subject::Block(_) | Subject::Fault(..) => None,
+        };
+        let is_left_out = |it: &Subject| variable(it).is_some_and(|it| !pair.compared.contains(&it));
+        self.others.iter().filter(|it| is_left_out(it.0)).map(|it| *it.1).collect()
+    }
+
     /// What the whole difference is put down to has been seen, also where the counter had parted before: the search
-    /// looks for what parts counters that agree.
-    pub fn explain(&mut self, cause: &Cause, trace: &Trace) {
+    /// looks for what parts counters that agree. So have variables that an event has parted, compared or not.
+    pub fn explain(&mut self, pair: &Pair, rows: &[Row], cause: &Cause, trace: &Trace) {
+        let is_parted = |it: Matched| {
+            let parts = |at: usize| {
+                let agreed = at.checked_sub(1).is_none_or(|before| pair.same(it, &rows[before]));
+                rows[at].event.is_some() && agreed && !pair.same(it, &rows[at])
+            };
+            (0..rows.len()).any(parts)
+        };
+        for (subject, at) in &self.others {
+            let known = &mut self.all[*at];
+            if let Subject::Variable(it) = subject
+                && !matches!(known.verdict, Verdict::Reachable(_))
+                && is_parted(*it)
+            {
+                (known.pitfall, known.verdict) = (Some(Pitfall::RESTART), Verdict::Reachable(Some(trace.clone())));
+            }
+        }
         let is_it = |it: &&mut Finding| {
             it.kind == Kind::Counter && it.pitfall == cause.pitfall && Some(&it.subject) == cause.counter.as_ref()
         };

@@ -1,11 +1,12 @@
 //! A sequence of inputs once more, with one thing alone as it is on the other system: what then no longer differs, differs
 //! because of that.
 
+use super::side::Side;
 use super::{Matched, Pair, Row, comparison};
 use crate::compare::program::scalar::Instance;
 use crate::machine::Interpreted;
 use staunch_host::{Event, Machine};
-use staunch_runtime::{BlockInfo, Family};
+use staunch_runtime::{BlockInfo, Family, PinRole};
 use std::ops::Range;
 
 /// Longer sequences are not run again.
@@ -14,7 +15,8 @@ const MAX_ROWS: usize = 20_000;
 /// What one program has of the other's system.
 #[derive(Clone, Debug)]
 pub enum Change {
-    /// The first program has what computes a counter, by its position among the counters.
+    /// One program has what computes a counter on the other side, by its position among the counters: the first, if the
+    /// types of its pins hold that.
     Counter(usize),
     /// So too another block, by its position among those.
     Block(usize),
@@ -29,28 +31,45 @@ pub enum Kept {
     Block(Matched),
 }
 
-impl Pair {
-    /// Whether these agree at the end of the rows, where one program alone has the change.
-    pub fn agrees_with(&self, change: &Change, rows: &[Row], wanted: &[Matched]) -> bool {
+/// A sequence of inputs that can be run again.
+pub struct Again<'a> {
+    pair: &'a Pair,
+    rows: &'a [Row],
+    last: &'a Row,
+    /// Whether each program comes to the same state again.
+    repeats: [bool; 2],
+}
+
+impl<'a> Again<'a> {
+    /// `None` where it is too long or ends in a fault.
+    pub fn new(pair: &'a Pair, rows: &'a [Row]) -> Option<Self> {
         let faults = rows.iter().any(|it| it.faults.iter().any(Option::is_some));
-        let Some(last) = rows.last().filter(|_| rows.len() <= MAX_ROWS && !faults) else { return false };
-        if self.exchanged(change).is_some_and(|it| !it.iter().all(|it| is_plain(it.block.info()))) {
-            return false;
-        }
-        // Who keeps it in the one event may lose it in another.
-        let sides: &[usize] = if matches!(change, Change::Kept(_)) { &[0, 1] } else { &[0] };
-        sides.iter().any(|side| {
-            // What runs here again is what has run.
-            let is_same = self.end(*side, None, rows).is_some_and(|it| it == last.states[*side]);
-            let agrees = |state: &[u8]| {
-                let mut states = last.states.each_ref().map(Vec::as_slice);
-                states[*side] = state;
-                wanted.iter().all(|it| comparison::equal(&self.sides, *it, states))
-            };
-            is_same && self.end(*side, Some(change), rows).is_some_and(|it| agrees(&it))
-        })
+        let last = rows.last().filter(|_| rows.len() <= MAX_ROWS && !faults)?;
+        let repeats = [0, 1].map(|side: usize| pair.end(side, None, rows).is_some_and(|it| it == last.states[side]));
+        Some(Self { pair, rows, last, repeats })
     }
 
+    /// Whether these agree at the end of the rows, where one program alone has the change.
+    pub fn agrees_with(&self, change: &Change, wanted: &[Matched]) -> bool {
+        if self.pair.exchanged(change).is_some_and(|it| !it.iter().all(|it| is_plain(it.block.info()))) {
+            return false;
+        }
+        // Who keeps it in the one event may lose it in another; a count need not fit the other program's type.
+        let is_kept = matches!(change, Change::Kept(_));
+        for side in (0..2).filter(|it| self.repeats[*it]) {
+            let Some(state) = self.pair.end(side, Some(change), self.rows) else { continue };
+            let mut states = self.last.states.each_ref().map(Vec::as_slice);
+            states[side] = &state;
+            let agrees = wanted.iter().all(|it| comparison::equal(&self.pair.sides, *it, states));
+            if agrees || !is_kept {
+                return agrees;
+            }
+        }
+        false
+    }
+}
+
+impl Pair {
     /// The block that is computed otherwise, on both sides.
     fn exchanged(&self, change: &Change) -> Option<[&Instance; 2]> {
         let block = |it: &Matched| [0, 1].map(|side: usize| &self.sides[side].scalars.blocks[it[side]]);
@@ -61,15 +80,15 @@ impl Pair {
         }
     }
 
-    /// A program's state at the end of the rows.
+    /// A program's state at the end of the rows; `None` where it ends before, or its types do not hold what is exchanged.
     fn end(&self, number: usize, change: Option<&Change>, rows: &[Row]) -> Option<Vec<u8>> {
         let side = &self.sides[number];
         let (mut machine, _) = Interpreted::new(&side.program).ok()?;
-        let exchanged = change.and_then(|it| self.exchanged(it));
-        if let Some(instances) = exchanged {
-            let blocks = instances.map(|it| it.block.info());
-            let bytes = &self.sides[1].initial[instances[1].offset..instances[1].offset + blocks[1].size];
-            machine.interpreter().compute_as(instances[0].offset, blocks, bytes);
+        let exchanged = change.and_then(|it| self.exchanged(it)).map(|it| [it[number], it[1 - number]]);
+        if let Some([own, other]) = exchanged {
+            let blocks = [own, other].map(|it| it.block.info());
+            let bytes = &self.sides[1 - number].initial[other.offset..other.offset + blocks[1].size];
+            machine.interpreter().compute_as(own.offset, blocks, bytes);
         }
         let mut drive = side.drive.clone();
         drive.go_to(&side.start);
@@ -77,9 +96,10 @@ impl Pair {
             if let Some(event) = row.event {
                 let before = machine.state().to_vec();
                 drive.start_again(event, &mut machine);
-                if let Some([_, other]) = exchanged {
-                    let keeps = |at: usize| self.sides[1].keeps(event, other.offset + at);
-                    machine.interpreter().restart_exchanged(&keeps);
+                if let Some([own, _]) = exchanged {
+                    // What an event keeps stays as it is: that is another difference.
+                    let is_kept = keeps_count(side, own, event);
+                    machine.interpreter().restart_exchanged(&|_| is_kept);
                 }
                 if let Some(Change::Kept(all)) = change {
                     for it in all.iter().filter(|it| self.keeps(**it, event)[1 - number]) {
@@ -95,7 +115,7 @@ impl Pair {
             }
             drive.scan_by(|instance, cx| machine.scan(instance, cx)).ok()?;
         }
-        Some(machine.state().to_vec())
+        machine.interpreter().exchange_fits().then(|| machine.state().to_vec())
     }
 
     /// Whether an event keeps anything of it, on each side.
@@ -117,6 +137,12 @@ impl Pair {
         };
         offset..offset + size
     }
+}
+
+/// Whether an event leaves a counter's value, or of another block what is first in it.
+fn keeps_count(side: &Side, block: &Instance, event: Event) -> bool {
+    let at = block.block.info().pin_for(PinRole::Count).map_or(0, |it| it.offset);
+    side.keeps(event, block.offset + at)
 }
 
 /// Whether it is a function block, all of whose memory is its own.

@@ -137,7 +137,7 @@ fn differs(pair: &mut Pair, world: &World, trace: &Trace, shortest: bool, findin
     let rows = pair.replay(&steps);
     let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
     let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
-    findings.explain(&cause, trace);
+    findings.explain(pair, &rows, &cause, trace);
     if cause.pitfall.is_none()
         && reason::find(pair, &rows, &differences, findings).is_none()
         && let Some(last) = rows.last()

@@ -4,7 +4,7 @@ use super::classify::Habits;
 use super::list::Pitfall;
 use super::parting::{Parting, other_block, parting};
 use super::relevant::Relevant;
-use crate::compare::pair::exchange::{Change, Kept};
+use crate::compare::pair::exchange::{Again, Change, Kept};
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::apart::Declared;
 use crate::compare::program::scalar::{Instance, Role};
@@ -30,19 +30,23 @@ pub fn shown(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) 
     let mut all = suspects(pair, rows, habits, relevant);
     all.sort_by_key(|it| it.row);
     all.truncate(MAX_SUSPECTS);
-    let alone = all.iter().position(|it| pair.agrees_with(&it.change, rows, &relevant.found));
-    let found = alone.or_else(|| of_several(pair, rows, relevant, &all))?;
+    if all.is_empty() {
+        return None;
+    }
+    let again = Again::new(pair, rows)?;
+    let alone = all.iter().position(|it| again.agrees_with(&it.change, &relevant.found));
+    let found = alone.or_else(|| of_several(&again, relevant, &all))?;
     Some(all.swap_remove(found))
 }
 
 /// The first of those that have to be kept together.
-fn of_several(pair: &Pair, rows: &[Row], relevant: &Relevant, all: &[Suspect]) -> Option<usize> {
+fn of_several(again: &Again, relevant: &Relevant, all: &[Suspect]) -> Option<usize> {
     let together = |some: &[usize]| {
         let all = some.iter().flat_map(|it| match &all[*it].change {
             Change::Kept(all) => all.as_slice(),
             Change::Counter(_) | Change::Block(_) => &[],
         });
-        pair.agrees_with(&Change::Kept(all.copied().collect()), rows, &relevant.found)
+        again.agrees_with(&Change::Kept(all.copied().collect()), &relevant.found)
     };
     let is_kept = |it: &usize| matches!(all[*it].change, Change::Kept(_));
     let mut needed: Vec<usize> = (0..all.len()).filter(is_kept).collect();
