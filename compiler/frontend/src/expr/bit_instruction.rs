@@ -66,6 +66,10 @@ impl<'s> Checker<'_, 's> {
         if !self.has_rung(name, given.last()?) || !complete {
             return None;
         }
+        let place_of =
+            |written: &[Written], at: usize| written[order.iter().position(|it| *it == at)?].place().cloned();
+        // A prescan finds an element by the index as the text has it, not as it was in a scan.
+        let named: Vec<_> = (0..operands.len()).map(|at| place_of(&written, at)).collect::<Option<_>>()?;
         for part in &mut written {
             match &mut part.held {
                 Held::Place(place) => self.fix(place),
@@ -73,11 +77,10 @@ impl<'s> Checker<'_, 's> {
                 Held::Value(_) => {}
             }
         }
-        let place = |at: usize| written[order.iter().position(|it| *it == at)?].place().cloned();
         let rung = written.iter().find_map(Written::value)?.clone();
-        let places: Vec<_> = (0..operands.len()).map(place).collect::<Option<_>>()?;
+        let places: Vec<_> = (0..operands.len()).map(|at| place_of(&written, at)).collect::<Option<_>>()?;
         let bits: Vec<_> = bits.into_iter().collect::<Option<_>>()?;
-        for ((place, bit), value) in places.iter().zip(&bits).zip(instruction.prescan()) {
+        for ((place, bit), value) in named.iter().zip(&bits).zip(instruction.prescan()) {
             self.note_assigned(place, bit.span);
             if let Some(value) = value {
                 self.prepared(place, Preparation::Bit { shift: bit.bits.map(|it| it.shift), value: *value });
