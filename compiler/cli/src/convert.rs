@@ -35,7 +35,7 @@ fn is_same(a: &Program, b: &Program) -> bool {
 
 fn refusal(compilation: &Compilation, converted: &Sources) -> String {
     let mut text =
-        "error: the program is not the same as one text: what its files say beside their text is a part of it"
+        "error: as one file of ST the program would be another: part of it is in these files, but not in their text"
             .to_owned();
     let first = compilation.diagnostics.iter().find(|it| it.severity == Severity::Error);
     if let Some(it) = first {

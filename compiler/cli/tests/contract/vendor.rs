@@ -85,7 +85,7 @@ fn what_files_say_beside_their_text_is_not_lost() {
     has(
         &said,
         &[
-            "the program is not the same as one text",
+            "as one file of ST the program would be another",
             "in line 3 of that text: `Line` is not declared",
             "nothing was written",
         ],

@@ -160,6 +160,9 @@ impl Printer<'_> {
     }
 
     fn block_head(&self, routine: &Routine, block: &Place, instruction: usize, inputs: &[Expr]) -> String {
+        // What notes a minor fault is given its place.
+        let is_given_place = matches!(block.ty, Type::Block(id) if id.info().name == "__MINOR_FAULT");
+        let inputs = if is_given_place && !self.has_places { &[] } else { inputs };
         let name = match block.ty {
             Type::Block(id) => match id.info().instructions[instruction].name {
                 "" => id.info().name,
