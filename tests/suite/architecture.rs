@@ -19,6 +19,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "staunch-runtime",
             "logos",
             "quick-xml",
+            "memchr",
             "rustc-hash",
             "chumsky",
             "strsim",

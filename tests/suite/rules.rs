@@ -1,4 +1,4 @@
-//! `docs/dialects.md` shows the rules of values as the compiler has them.
+//! `docs/dialects.md` shows the rules of values as the compiler has them, and `docs/ladder.md` the instructions of ladder.
 
 use staunch_frontend::{Dialect, rules};
 use std::fmt::Write;
@@ -57,6 +57,27 @@ fn rules_of_values_are_documented() {
         return;
     }
     assert_eq!(written, table, "docs/dialects.md differs from compiler/frontend/src/dialect/rules.rs");
+}
+
+const LADDER: &str =
+    "<!-- instructions of ladder: written by `STAUNCH_WRITE_RULES=1 cargo test -p staunch-tests ladder` -->\n";
+const END_OF_LADDER: &str = "<!-- end of the instructions of ladder -->\n";
+
+#[test]
+fn instructions_of_ladder_are_documented() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/ladder.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = page.split_once(LADDER).expect("docs/ladder.md has the place of the instructions");
+    let (written, after) = rest.split_once(END_OF_LADDER).expect("docs/ladder.md has the end of the instructions");
+    let mut table = "| instruction | operands | does |\n|---|---|---|\n".to_owned();
+    for (names, operands, does) in staunch_frontend::vendor::ladder_instructions() {
+        writeln!(table, "| {names} | {operands} | {does} |").unwrap();
+    }
+    if std::env::var_os("STAUNCH_WRITE_RULES").is_some() {
+        std::fs::write(path, [before, LADDER, &table, END_OF_LADDER, after].concat()).unwrap();
+        return;
+    }
+    assert_eq!(written, table, "docs/ladder.md differs from the table of the instructions");
 }
 
 #[test]

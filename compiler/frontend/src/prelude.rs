@@ -322,6 +322,14 @@ pub const UNITS: &[Unit] = units! {
     Type     "FB_FormatString2" "fb_formatstring2" [Codesys: Tc2_Utilities] "__FormatBase";
     Type     "FB_MemRingBuffer" "fb_memringbuffer" [Codesys: Tc2_Utilities];
     Type     "__FormatBase"     "formatted"        [Codesys] "T_Arg";
+    Type     "ALARM"            "logix_alarm"      [Logix];
+    Type     "CONTROL"          "logix_control"    [Logix];
+    Type     "MESSAGE"          "logix_message"    [Logix];
+    Type     "PID"              "logix_pid"        [Logix];
+    Type     "SERIAL_PORT_CONTROL" "logix_serial_port_control" [Logix];
+    Type     "SFC_ACTION"       "logix_sfc_action" [Logix];
+    Type     "SFC_STEP"         "logix_sfc_step"   [Logix];
+    Type     "SFC_STOP"         "logix_sfc_stop"   [Logix];
     Global   "TwinCAT_SystemInfoVarList" "taskinfo" [Codesys];
     // Without its list.
     Global   "_TaskInfo"        (LINE_END)         [Codesys] "TwinCAT_SystemInfoVarList";
@@ -611,6 +619,8 @@ impl Uses {
             let before = first.checked_sub(1).map(|it| (tokens.kinds[it], word(it)));
             let after = tokens.kinds.get(at + 1).copied();
             let is_declared = match any.declares {
+                // In Logix a tag may have the name of a type.
+                Declares::Type if dialect == Dialect::Logix && types.is_list => false,
                 Declares::Type | Declares::Function | Declares::Space => declares(before, after, &types),
                 Declares::Value | Declares::Global => {
                     declares(before, after, &types) || types.declare_value(before, after)

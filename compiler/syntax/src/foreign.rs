@@ -135,7 +135,7 @@ fn rungs(text: &str) -> Option<Kind> {
     Some(Kind {
         name: "neutral text of Logix (rungs of ladder)",
         at,
-        help: "write what each rung does in Structured Text: `XIC(a)OTE(b);` is `b := a;`",
+        help: "put them into a PROGRAM that declares their tags, one rung a line: `XIC(a)OTE(b);`",
     })
 }
 

@@ -7,6 +7,7 @@ mod exp;
 mod json;
 mod l5x;
 mod listing;
+mod neutral;
 mod openplc;
 mod plcopen;
 mod scl;
@@ -16,7 +17,7 @@ mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
 pub use device::Device;
-pub use l5x::controller_service;
+pub use l5x::{controller_service, ladder_instructions};
 pub use listing::{Reference, definitions, listed, project_name, references};
 pub use openplc::is_project as is_openplc_project;
 
@@ -29,6 +30,9 @@ pub fn read(text: &str) -> Option<Assembly> {
     }
     if scl::is_source(text) {
         return Some(scl::read(text));
+    }
+    if let Some(found) = neutral::read(text) {
+        return Some(found);
     }
     let mut reader = Reader::new(text)?;
     let root = reader.root().ok()??;

@@ -103,23 +103,8 @@ const MEMBERS: [(&str, &[&str]); 2] = [
 ];
 
 /// Types that Logix has for instructions of ladder, charts and communication.
-const OF_LOGIX: [&str; 15] = [
-    "ALARM",
-    "ALARM_ANALOG",
-    "ALARM_DIGITAL",
-    "CAM",
-    "CAM_PROFILE",
-    "DEADTIME",
-    "MESSAGE",
-    "MOTION_GROUP",
-    "PHASE",
-    "PID",
-    "PID_ENHANCED",
-    "SERIAL_PORT_CONTROL",
-    "SFC_ACTION",
-    "SFC_STEP",
-    "SFC_STOP",
-];
+const OF_LOGIX: [&str; 8] =
+    ["ALARM_ANALOG", "ALARM_DIGITAL", "CAM", "CAM_PROFILE", "DEADTIME", "MOTION_GROUP", "PHASE", "PID_ENHANCED"];
 
 /// Functions of S7: why they are not there, and what to write for them.
 const OF_S7: [(&str, &str, &str); 2] = [

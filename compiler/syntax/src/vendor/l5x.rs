@@ -1,9 +1,10 @@
 //! The L5X of Rockwell's Logix Designer: tags, types, Add-On Instructions, programs and tasks are elements, routines in
-//! Structured Text are lines. Operands that Structured Text has no words for (aliases, modules' tags, JSR, calls of
+//! Structured Text are lines, those in ladder are made statements. Operands that Structured Text has no words for (aliases, modules' tags, JSR, calls of
 //! Add-On Instructions) are written in its words.
 
 mod data;
 mod instruction;
+mod ladder;
 mod logic;
 mod module;
 mod names;
@@ -14,14 +15,17 @@ mod task;
 
 use super::assembly::{Assembly, Trouble};
 use super::xml::{Broken, Part, Reader};
-use names::Names;
+pub use ladder::described as ladder_instructions;
+pub use ladder::{Ladder, Text, is_rung, shown, starts_as_rung, statements};
+pub use logic::Logic;
+pub use names::{Names, Scope, Shown};
 pub use service::controller_service;
 
 /// Reads what follows the root.
 pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
     let mut out = Assembly::default();
     out.write("{dialect 'logix'}\n", &reader.last());
-    let mut names = Names::default();
+    let mut names = Names { shown: shown(file), ..Names::default() };
     if let Err(broken) = controller(file, &mut reader, &mut names, &mut out) {
         let message = format!("this L5X is not well-formed XML: {}", broken.why);
         out.problem(Trouble::Broken, message, &broken.place);

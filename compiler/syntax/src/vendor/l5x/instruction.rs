@@ -5,7 +5,7 @@ use super::super::xml::{Broken, Element, Part, Reader};
 use super::data;
 use super::logic::Logic;
 use super::names::{Names, Operand, Scope, key, legal};
-use super::program::{Body, Routine, routines};
+use super::program::{Body, Routine, in_words, routines, subroutines};
 use super::tag;
 use core::ops::Range;
 use rustc_hash::FxHashMap;
@@ -19,6 +19,8 @@ struct Instruction<'t> {
     routines: Vec<Routine<'t>>,
     /// It has a routine for the prescan.
     is_prescanned: bool,
+    /// It has a routine for rungs that are false.
+    runs_when_false: bool,
     /// Parameters that are other names of parts of local tags, and that calls have to give.
     alias_operands: Vec<Range<usize>>,
     /// All of these, which others read, and write where they are inputs.
@@ -42,6 +44,9 @@ pub fn all<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names, out: &
                 names.alias_parameters.extend(it.scope.aliases.keys().map(|alias| (key(it.name), alias.clone())));
                 let members = it.scope.types.iter().map(|(tag, ty)| ((key(it.name), tag.clone()), ty.clone()));
                 names.members.extend(members);
+                if it.runs_when_false {
+                    names.runs_when_false.insert(key(it.name));
+                }
                 all.push(it);
             }
             Part::Open(element) => {
@@ -56,7 +61,7 @@ pub fn all<'t>(file: &'t str, reader: &mut Reader<'t>, names: &mut Names, out: &
             Part::Close => break,
         }
     }
-    all.iter().for_each(|it| it.write(file, names, out));
+    all.into_iter().for_each(|it| it.write(file, names, out));
     Ok(())
 }
 
@@ -74,6 +79,7 @@ fn instruction<'t>(
         operands: Vec::new(),
         routines: Vec::new(),
         is_prescanned: element.attribute(file, "ExecutePrescan") == Some("true"),
+        runs_when_false: element.attribute(file, "ExecuteEnableInFalse") == Some("true"),
         alias_operands: Vec::new(),
         alias_parameters: Vec::new(),
     };
@@ -159,23 +165,41 @@ impl<'t> Instruction<'t> {
         out.write("END_PROPERTY\n", place);
     }
 
-    fn write(&self, file: &'t str, names: &Names, out: &mut Assembly) {
+    fn write(mut self, file: &'t str, names: &Names, out: &mut Assembly) {
+        let mut routines = core::mem::take(&mut self.routines);
+        let logic = Logic {
+            file,
+            names,
+            scope: &self.scope,
+            actions: FxHashMap::default(),
+            subroutines: subroutines(&routines),
+            first_scan: None,
+            main: "",
+        };
         out.copy(file, &self.declaration);
+        in_words(&mut routines, "Logic", &logic, &self.end, out);
         self.alias_parameters.iter().for_each(|it| self.property(it, names, out));
         for place in &self.alias_operands {
             let message = format!("an operand of `{}` is an alias of a part of a local tag", self.name);
             out.problem(Trouble::NotSupported, message, place);
         }
-        let logic = Logic { file, names, scope: &self.scope, actions: FxHashMap::default(), main: "" };
-        for routine in &self.routines {
+        let named = |name: &str| routines.iter().find(|it| it.name.eq_ignore_ascii_case(name));
+        if self.scope.tags.contains("enableout") {
+            out.write("EnableOut := EnableIn;\n", &self.end);
+        }
+        if let Some(routine) = named("EnableInFalse").filter(|_| self.runs_when_false) {
+            out.write("IF NOT EnableIn THEN\n", &routine.place);
+            routine.write(self.name, &logic, out);
+            out.write("RETURN;\nEND_IF;\n", &routine.place);
+        }
+        for routine in &routines {
             if routine.name.eq_ignore_ascii_case("Logic") {
-                out.write("EnableOut := EnableIn;\n", &routine.place);
                 routine.write(self.name, &logic, out);
             } else if self.is_prescanned && routine.name.eq_ignore_ascii_case("Prescan") && routine.holds_any(file) {
                 let message = format!("the routine `Prescan` of `{}` would run before the first scan", self.name);
                 out.problem(Trouble::NotSupported, message, &routine.place);
             }
-            // What runs while an instruction is not enabled never does in Structured Text, and a postscan only in charts.
+            // A postscan is one of charts.
         }
         out.write("END_FUNCTION_BLOCK\n", &self.end);
     }
@@ -185,6 +209,7 @@ impl Routine<'_> {
     fn holds_any(&self, file: &str) -> bool {
         match &self.body {
             Body::Text(chunks) => chunks.iter().any(|it| !file[it.place.clone()].trim().is_empty()),
+            Body::Rungs(rungs) => !rungs.is_empty(),
             Body::Other(..) => true,
         }
     }

@@ -8,6 +8,19 @@ use super::service::controller_service;
 use core::ops::Range;
 use rustc_hash::FxHashMap;
 
+/// The parameters of a routine in ladder.
+#[derive(Clone, Debug)]
+pub enum Subroutine {
+    Known {
+        /// The operands of its `SBR`.
+        inputs: Vec<Vec<Chunk>>,
+        /// Of each `RET` that has operands, in the order of the rungs.
+        returns: Vec<Vec<Vec<Chunk>>>,
+    },
+    /// It cannot be read.
+    Unknown,
+}
+
 /// What the operands of a program or an instruction are.
 pub struct Logic<'a> {
     pub file: &'a str,
@@ -15,8 +28,29 @@ pub struct Logic<'a> {
     pub scope: &'a Scope,
     /// Routines, and the actions that they are.
     pub actions: FxHashMap<String, String>,
+    /// What routines in ladder take and give.
+    pub subroutines: FxHashMap<String, Subroutine>,
+    /// The variable that is `S:FS`.
+    pub first_scan: Option<String>,
     /// The main routine of a program.
     pub main: &'a str,
+}
+
+impl Logic<'_> {
+    /// The type of an operand, where it is known.
+    pub fn type_of(&self, operand: &str) -> Option<String> {
+        let own = self.names.type_of(operand, self.scope);
+        own.or_else(|| self.names.type_of(operand, &self.names.controller))
+    }
+}
+
+impl Logic<'_> {
+    /// Whether an operand is a tag that is no array.
+    pub fn is_single(&self, operand: &str) -> bool {
+        let name = key(operand);
+        let is = |it: &Scope| it.types.contains_key(&name) && !it.arrays.contains(&name);
+        if self.scope.tags.contains(&name) { is(self.scope) } else { is(&self.names.controller) }
+    }
 }
 
 /// Writes the chunks of a routine.
@@ -140,10 +174,7 @@ impl<'a> Writer<'a, '_> {
                 (2, Piece::Itself)
             }
             b'\'' => (string(rest), Piece::Itself),
-            b'[' if rest.starts_with("[:=]") => {
-                let message = "an assignment `[:=]`, which is reset when its step or the controller starts again";
-                (4, Piece::Instead(format!("{message}, is not supported"), ":="))
-            }
+            b'[' if rest.starts_with("[:=]") => (4, Piece::Itself),
             b'\\' => {
                 let name = &rest[..1 + word(&rest[1..], "_.")];
                 let message = format!("`{name}` is a tag of another program, which cannot be reached here");
@@ -178,6 +209,9 @@ impl<'a> Writer<'a, '_> {
         let after = rest[name.len()..].trim_start();
         let scope = self.logic.scope;
         if let Some(flag) = status_flag(rest) {
+            if let Some(first_scan) = self.logic.first_scan.as_ref().filter(|_| flag.eq_ignore_ascii_case(FIRST_SCAN)) {
+                return (flag.len(), Piece::Words(first_scan.clone()));
+            }
             let message = format!("`{flag}`, a status flag of the controller, is not supported");
             return (flag.len(), Piece::Instead(message, "FALSE"));
         }
@@ -304,6 +338,8 @@ impl Call<'_> {
         }
     }
 }
+
+pub const FIRST_SCAN: &str = "S:FS";
 
 /// `S:FS`, the flag of the first scan, and the flags of the last operation.
 fn status_flag(rest: &str) -> Option<&str> {

@@ -21,6 +21,21 @@ pub struct Names {
     /// Programs that are not disabled, and what they are called in Structured Text.
     pub programs: FxHashMap<String, String>,
     pub disabled_programs: FxHashSet<String>,
+    /// Add-On Instructions that do something where their rung is false.
+    pub runs_when_false: FxHashSet<String>,
+    /// The preset and the accumulated value that rungs show of a timer or counter.
+    pub shown: FxHashMap<String, Shown>,
+}
+
+/// What rungs show of a timer or counter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    Values {
+        preset: i32,
+        accum: i32,
+    },
+    /// Rungs differ: there are several of this name.
+    Several,
 }
 
 /// A parameter that each call gives.
@@ -36,7 +51,9 @@ pub struct Scope {
     pub tags: FxHashSet<String>,
     /// What they are other names of.
     pub aliases: FxHashMap<String, String>,
-    /// The types of an instruction's parameters and local tags.
+    /// Tags that are arrays.
+    pub arrays: FxHashSet<String>,
+    /// The types of tags, and of an instruction's parameters.
     pub types: FxHashMap<String, String>,
 }
 
@@ -50,7 +67,7 @@ pub fn plain(name: &str) -> String {
 }
 
 /// Words of Structured Text that are names in Logix, in addition to those of types.
-const WORDS: [&str; 38] = [
+const WORDS: [&str; 39] = [
     "ACTION",
     "AND_THEN",
     "ARRAY",
@@ -78,6 +95,7 @@ const WORDS: [&str; 38] = [
     "TASK",
     "TEST",
     "THIS",
+    "TO",
     "TYPE",
     "UNION",
     "USING",

@@ -1,11 +1,14 @@
 //! Programs and their routines: the main routine is the program's body, the others are its actions.
 
-use super::super::assembly::{Assembly, Chunk, Trouble};
+use super::super::assembly::{Assembly, Chunk, Says, Trouble};
 use super::super::xml::{Broken, Element, Part, Reader};
-use super::logic::{self, Logic};
+use super::ladder::{self, Text, Variable};
+use super::logic::{self, FIRST_SCAN, Logic, Subroutine};
 use super::names::{Names, Scope, free, key};
 use super::tag;
 use core::ops::Range;
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
 /// A routine as the file has it.
 #[derive(Debug)]
@@ -19,6 +22,8 @@ pub struct Routine<'t> {
 #[derive(Debug)]
 pub enum Body {
     Text(Vec<Chunk>),
+    /// A ladder diagram.
+    Rungs(Vec<Text>),
     /// Why it is not text.
     Other(&'static str, Range<usize>),
 }
@@ -56,7 +61,20 @@ pub fn read<'t>(
     out.copy(file, &head);
     out.copy(file, &sections);
     let actions = routines.iter().map(|it| (key(it.name), free(it.name, "routine", &scope.tags))).collect();
-    let logic = Logic { file, names, scope: &scope, actions, main };
+    let names_first_scan = routines.iter().any(|it| it.names(file, FIRST_SCAN));
+    let logic = Logic {
+        file,
+        names,
+        scope: &scope,
+        actions,
+        subroutines: subroutines(&routines),
+        first_scan: names_first_scan.then(|| free("S_FS", "flag", &scope.tags)),
+        main,
+    };
+    in_words(&mut routines, main, &logic, &element.place, out);
+    if let Some(flag) = &logic.first_scan {
+        out.write(&format!("VAR {flag}, {flag}_was : BOOL; END_VAR\n"), &element.place);
+    }
     if !main.is_empty() && !routines.iter().any(|it| it.name.eq_ignore_ascii_case(main)) {
         let place = element.attribute_place(file, "MainRoutineName").unwrap_or_else(|| element.place.clone());
         out.problem(Trouble::Odd, format!("the program `{name}` has no routine `{main}`"), &place);
@@ -73,6 +91,10 @@ pub fn read<'t>(
         routine.write(name, &logic, out);
         out.write("END_ACTION\n", &routine.place);
     }
+    if let Some(flag) = &logic.first_scan {
+        // The prescan takes back what each scan notes.
+        out.write(&format!("{flag} := NOT {flag}_was;\n{flag}_was [:=] TRUE;\n"), &element.place);
+    }
     if let Some(main) = routines.iter().find(|it| it.name.eq_ignore_ascii_case(main)) {
         main.write(name, &logic, out);
     }
@@ -83,6 +105,34 @@ pub fn read<'t>(
         names.programs.insert(key(name), called);
     }
     Ok(())
+}
+
+/// What routines take and give that are not text.
+pub fn subroutines(routines: &[Routine<'_>]) -> FxHashMap<String, Subroutine> {
+    let parameters = |it: &Routine<'_>| match &it.body {
+        Body::Rungs(rungs) => Some((key(it.name), ladder::subroutine(rungs))),
+        Body::Other(..) => Some((key(it.name), Subroutine::Unknown)),
+        Body::Text(_) => None,
+    };
+    routines.iter().filter_map(parameters).collect()
+}
+
+/// Makes statements of rungs, and declares the variables that these need. Those of `main` live for one scan; an action sees only
+/// what is kept.
+pub fn in_words(routines: &mut [Routine<'_>], main: &str, logic: &Logic<'_>, place: &Range<usize>, out: &mut Assembly) {
+    let mut sections: BTreeMap<String, (&str, &str)> = BTreeMap::new();
+    for routine in routines {
+        let Body::Rungs(rungs) = &routine.body else { continue };
+        let ladder = ladder::statements(routine.name, rungs, logic);
+        for Variable { name, ty, is_shared } in ladder.variables {
+            let is_kept = is_shared || !routine.name.eq_ignore_ascii_case(main);
+            sections.insert(name, (if is_kept { "VAR" } else { "VAR_TEMP" }, ty));
+        }
+        routine.body = Body::Text(ladder.chunks);
+    }
+    for (name, (section, ty)) in sections {
+        out.write(&format!("{section} {name} : {ty}; END_VAR\n"), place);
+    }
 }
 
 /// The routines in an element that was opened, to its end.
@@ -116,7 +166,7 @@ fn routine<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) ->
     while let Some(part) = reader.part()? {
         match part {
             Part::Open(part) if part.name == "STContent" => routine.body = Body::Text(lines(reader)?),
-            Part::Open(part) if part.name == "RLLContent" => routine.body = rungs(file, reader, part.place)?,
+            Part::Open(part) if part.name == "RLLContent" => routine.body = Body::Rungs(rungs(file, reader)?),
             Part::Open(part) => {
                 if let (Some(language), true) = (language(part.name), holds_any(reader)?) {
                     routine.body = Body::Other(language, part.place);
@@ -153,66 +203,35 @@ fn holds_any(reader: &mut Reader<'_>) -> Result<bool, Broken> {
     }
 }
 
-/// A ladder diagram that was opened, to its end. Rungs that only call routines, as main routines mostly are, say so in
-/// the words of Structured Text.
-fn rungs(file: &str, reader: &mut Reader<'_>, place: Range<usize>) -> Result<Body, Broken> {
-    let (mut chunks, mut only_calls) = (Vec::new(), true);
+/// The rungs of a ladder diagram that was opened, to its end.
+fn rungs(file: &str, reader: &mut Reader<'_>) -> Result<Vec<Text>, Broken> {
+    let mut rungs: Vec<Text> = Vec::new();
+    let (mut number, mut comment, mut edit) = (String::new(), String::new(), None);
     let mut open = 1_usize;
     while open > 0 {
         match reader.part()? {
             Some(Part::Open(element)) if element.name == "Text" => {
-                for text in reader.content("")? {
-                    match calls(&file[text.place.clone()]) {
-                        Some(calls) => chunks.extend(calls.into_iter().flat_map(|it| statement(&text.place, it))),
-                        None => only_calls = false,
-                    }
-                }
+                let text = Text::new(file, number.clone(), reader.content("")?, element.place);
+                rungs.push(text.remarked(&comment).edited(edit.take()));
             }
-            Some(Part::Open(element)) if element.name == "Rung" => open += 1,
+            Some(Part::Open(element)) if element.name == "Comment" => {
+                let chunks = reader.content("")?.into_iter().filter(|it| it.says == Says::Itself);
+                comment = chunks.map(|it| &file[it.place]).collect();
+            }
+            Some(Part::Open(element)) if element.name == "Rung" => {
+                let own = element.attribute(file, "Number");
+                number = own.map_or_else(|| rungs.len().to_string(), str::to_owned);
+                comment.clear();
+                edit = element.attribute(file, "Type").filter(|it| *it != "N").map(str::to_owned);
+                open += 1;
+            }
             Some(Part::Open(_)) => reader.skip()?,
             Some(Part::Close) => open -= 1,
             Some(Part::Text(_)) => {}
             None => break,
         }
     }
-    Ok(if only_calls { Body::Text(chunks) } else { Body::Other("a ladder diagram (RLL), not Structured Text", place) })
-}
-
-/// The calls of a rung that has nothing else, in their order: `JSR(Fill,0)JSR(Drain,0);`, `[JSR(Fill,0) ,JSR(Drain,0) ];`,
-/// whose branches run one after the other, `NOP();`.
-fn calls(rung: &str) -> Option<Vec<Range<usize>>> {
-    let (mut calls, mut at, mut branches) = (Vec::new(), 0, 0_usize);
-    while at < rung.len() {
-        let rest = &rung[at..];
-        at += match rest.as_bytes()[0] {
-            b' ' | b'\t' | b'\r' | b'\n' | b';' => 1,
-            b'[' => {
-                branches += 1;
-                1
-            }
-            b',' if branches > 0 => 1,
-            b']' => {
-                branches = branches.checked_sub(1)?;
-                1
-            }
-            _ if rest.starts_with("NOP()") => "NOP()".len(),
-            _ => {
-                let operands = rest.strip_prefix("JSR(")?;
-                let end = operands.find(['(', ')']).filter(|it| operands[*it..].starts_with(')'))?;
-                let length = "JSR(".len() + end + 1;
-                calls.push(at..at + length);
-                length
-            }
-        };
-    }
-    (branches == 0).then_some(calls)
-}
-
-/// A call of a rung as a statement.
-fn statement(rung: &Range<usize>, call: Range<usize>) -> [Chunk; 2] {
-    let place = rung.start + call.start..rung.start + call.end;
-    let end = Chunk::words(";\n", &(place.end..place.end));
-    [Chunk::verbatim(place), end]
+    Ok(rungs)
 }
 
 /// The lines of a routine that was opened, to its end.
@@ -232,10 +251,21 @@ fn lines(reader: &mut Reader<'_>) -> Result<Vec<Chunk>, Broken> {
 }
 
 impl Routine<'_> {
+    /// Whether its text names something, which is in capitals.
+    fn names(&self, file: &str, name: &str) -> bool {
+        let has = |it: &str| it.to_ascii_uppercase().contains(name);
+        match &self.body {
+            Body::Text(chunks) => chunks.iter().any(|it| has(&file[it.place.clone()])),
+            Body::Rungs(rungs) => rungs.iter().any(|it| has(&it.text)),
+            Body::Other(..) => false,
+        }
+    }
+
     /// Writes the statements.
     pub fn write(&self, owner: &str, logic: &Logic<'_>, out: &mut Assembly) {
         match &self.body {
             Body::Text(chunks) => logic::write(logic, chunks, out),
+            Body::Rungs(_) => unreachable!("rungs have been made statements"),
             Body::Other(why, place) => {
                 let message = format!("the routine `{}` of `{owner}` is {why}", self.name);
                 out.problem(Trouble::OtherLanguage, message, place);

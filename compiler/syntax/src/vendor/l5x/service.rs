@@ -32,7 +32,6 @@ const SERVICES: &[(&str, &[&str])] = &[
     ("it sends a message to another device", &["MSG"]),
     ("it writes to a module before the scan ends", &["IOT"]),
     ("it starts a task of the controller", &["EVENT"]),
-    ("it changes which tasks of the controller interrupt", &["UID", "UIE"]),
     ("it works on alarms of the controller", &["ALMA", "ALMD"]),
     ("it works on an equipment phase", &["PSC", "PCMD", "POVR", "PFL", "PCLF", "PXRQ", "PRNP", "PPD", "PATT", "PDET"]),
     (

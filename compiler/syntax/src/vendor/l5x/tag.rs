@@ -3,7 +3,7 @@
 use super::super::assembly::{Assembly, Chunk};
 use super::super::xml::{Broken, Element, Part, Reader};
 use super::data::{self, Value, array_of, name_of, ty_text};
-use super::names::{Names, Scope, is_operand, key};
+use super::names::{Names, Scope, Shown, is_operand, key};
 use staunch_runtime::{BLOCKS, Family};
 
 type Chunks = Result<Vec<Chunk>, Broken>;
@@ -104,8 +104,9 @@ fn each_tag<'t>(
                         reader.skip()?;
                     }
                     None => {
-                        if element.name == "LocalTag" {
-                            scope.types.insert(name.clone(), type_name(file, &element));
+                        scope.types.insert(name.clone(), type_name(file, &element));
+                        if element.attribute(file, "Dimensions").is_some() {
+                            scope.arrays.insert(name.clone());
                         }
                         scope.tags.insert(name);
                         let is_constant = element.attribute(file, "Constant") == Some("true");
@@ -159,7 +160,11 @@ pub fn tag<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, he
     let dimensions = element.attribute(file, "Dimensions").unwrap_or_default();
     let mut chunks = vec![Chunk::words(head, place)];
     chunks.extend(declared(file, element, dimensions));
-    let value = initial(file, reader, element.attribute(file, "DataType").unwrap_or_default())?;
+    let ty = element.attribute(file, "DataType").unwrap_or_default();
+    let value = initial(file, reader, ty)?;
+    if value.is_none() {
+        chunks.extend(shown(file, element, ty, dimensions, names));
+    }
     // An instruction's parameters start at their defaults, unless its tag says otherwise.
     let says_all = |it: &Value| names.instructions.contains_key(&key(it.ty)) || has_defaults(it.ty);
     let value = value.filter(|it| !it.is_zero() || says_all(it));
@@ -170,6 +175,38 @@ pub fn tag<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, he
     }
     chunks.push(Chunk::words("; END_VAR\n", place));
     Ok(chunks)
+}
+
+/// The values that rungs show of a timer or counter without data, or of the elements of an array of them.
+fn shown(file: &str, element: &Element<'_>, ty: &str, dimensions: &str, names: &Names) -> Option<Chunk> {
+    let is_one = ["TIMER", "COUNTER"].iter().any(|it| it.eq_ignore_ascii_case(ty));
+    let name = element.attribute(file, "Name").filter(|_| is_one)?;
+    let values = |name: &str| match names.shown.get(&key(name)) {
+        Some(Shown::Values { preset, accum }) => Ok(Some(format!("(PRE := {preset}, ACC := {accum})"))),
+        Some(Shown::Several) => {
+            Err(format!("rungs show different values of `{name}`, and the tag has no data that say which is right"))
+        }
+        None => Ok(None),
+    };
+    let found = match dimensions.parse::<usize>() {
+        _ if dimensions.is_empty() => values(name),
+        Ok(count) => (0..count)
+            .map(|it| values(&format!("{name}[{it}]")))
+            .collect::<Result<Vec<_>, _>>()
+            .map(|it| it.iter().any(Option::is_some).then(|| list(&it))),
+        // Of several dimensions.
+        Err(_) => Ok(None),
+    };
+    match found {
+        Ok(values) => values.map(|it| Chunk::words(format!(" := {it}"), &element.place)),
+        Err(message) => Some(Chunk::odd(message, &element.place)),
+    }
+}
+
+/// Values of elements, some of which have none.
+fn list(values: &[Option<String>]) -> String {
+    let each = values.iter().map(|it| it.as_deref().unwrap_or("(PRE := 0)"));
+    format!("[{}]", each.collect::<Vec<_>>().join(", "))
 }
 
 /// Whether a structure of Logix's own has members that start TRUE, as `EnableIn` does.

@@ -1,0 +1,501 @@
+//! Rungs as statements.
+
+use super::super::super::assembly::{Chunk, Says, Trouble};
+use super::super::logic::Logic;
+use super::super::names::key;
+use super::super::service::controller_service;
+use super::condition::{Condition, Expression};
+use super::jump::{self, Form, Parts};
+use super::parse::{self, Branch, Element, Instruction, Path};
+use super::rows::{ANY, Does, Row, row_of};
+use super::subroutine::each;
+use super::text::Text;
+use core::ops::Range;
+
+/// A routine in Structured Text.
+#[derive(Debug, Default)]
+pub struct Ladder {
+    pub chunks: Vec<Chunk>,
+    /// What its statements need.
+    pub variables: Vec<Variable>,
+}
+
+#[derive(Debug)]
+pub struct Variable {
+    pub name: String,
+    pub ty: &'static str,
+    /// Other routines use it, too.
+    pub is_shared: bool,
+}
+
+/// The rungs of a routine as statements.
+pub fn statements(routine: &str, rungs: &[Text], logic: &Logic<'_>) -> Ladder {
+    let paths: Vec<_> = rungs.iter().map(|it| parse::rung(&it.text)).collect();
+    let parts = Parts::of(rungs, &paths);
+    let mut ladder = Ladder::default();
+    let Some(first) = rungs.first() else { return ladder };
+    let mut writer = Writer {
+        routine,
+        logic,
+        text: first,
+        parts: &parts,
+        part: 0,
+        zone: None,
+        returns: 0,
+        used: 0,
+        out: &mut ladder,
+        leaves: false,
+    };
+    if parts.form != Form::Straight && uses(rungs, &paths, "MCR") {
+        writer.open_zones();
+    }
+    writer.between_parts(|parts, part, _, _| parts.first(part));
+    for (text, path) in rungs.iter().zip(&paths) {
+        (writer.text, writer.used) = (text, 0);
+        match path {
+            Ok(path) => writer.rung(path),
+            Err(it) => writer.wrong(Trouble::Odd, it.message.clone(), &it.place),
+        }
+    }
+    writer.between_parts(|parts, part, _, leaves| parts.last(part, leaves));
+    ladder
+}
+
+/// Whether an instruction is somewhere in the rungs.
+fn uses(rungs: &[Text], paths: &[Result<Path, parse::Mistake>], name: &str) -> bool {
+    let mut found = false;
+    for (text, path) in rungs.iter().zip(paths) {
+        let Ok(path) = path else { continue };
+        each(path, &mut |it| found |= text.text[it.name.clone()].eq_ignore_ascii_case(name));
+    }
+    found
+}
+
+pub struct Writer<'a> {
+    pub routine: &'a str,
+    pub logic: &'a Logic<'a>,
+    pub text: &'a Text,
+    pub parts: &'a Parts,
+    /// The part that the rung is in.
+    part: usize,
+    /// What rungs begin with, once an `MCR` may have been executed.
+    pub zone: Option<String>,
+    /// `RET`s with operands so far.
+    pub returns: usize,
+    /// Variables of conditions that the rung has so far.
+    used: usize,
+    out: &'a mut Ladder,
+    /// The last rung went elsewhere, whatever its condition.
+    leaves: bool,
+}
+
+impl Writer<'_> {
+    fn rung(&mut self, path: &Path) {
+        let whole = 0..self.text.text.len();
+        if let Some(remark) = &self.text.remark {
+            let words = Chunk::words(format!("// {remark}\n"), &self.text.place(&whole));
+            self.out.chunks.push(words);
+        }
+        if let Some(edit) = &self.text.edit {
+            let message =
+                format!("it is an edit that is not finished (type {edit}): finish it, and export the file again");
+            self.wrong(Trouble::NotSupported, message, &whole);
+        }
+        if let Some(label) = jump::label(self.text, path) {
+            if self.parts.number(&label) != Some(self.part + 1) {
+                self.wrong(Trouble::Odd, format!("the label `{label}` is there already"), &whole);
+            }
+            self.part += 1;
+            self.between_parts(Parts::next);
+        }
+        self.leaves = false;
+        let start = self.zone.clone().map_or(Condition::True, Condition::Variable);
+        self.path(path, start, false);
+    }
+
+    /// Instructions in a row. The condition after them is of use only where it is `wanted`.
+    fn path(&mut self, path: &[Element], start: Condition, wanted: bool) -> Condition {
+        let (mut condition, mut own) = (start, None);
+        for (at, element) in path.iter().enumerate() {
+            let wanted = wanted || at + 1 < path.len();
+            condition = match element {
+                Element::Instruction(it) => self.instruction(it, condition, &mut own, wanted),
+                Element::Branch(it) => self.branch(it, condition, &mut own, wanted),
+            };
+        }
+        condition
+    }
+
+    fn branch(&mut self, it: &Branch, condition: Condition, own: &mut Option<String>, wanted: bool) -> Condition {
+        let place = self.text.place(&it.place);
+        if let Some(tests) = self.tests(it, &place) {
+            return tests.map_or(condition.clone(), |it| condition.and(it, &place));
+        }
+        let start = self.in_variable(condition, own, &place);
+        let after = wanted.then(|| self.variable());
+        for (at, path) in it.paths.iter().enumerate() {
+            let end = self.path(path, start.clone(), wanted);
+            let Some(after) = &after else { continue };
+            let head = if at == 0 { format!("{after} := ") } else { format!("{after} := {after} OR ") };
+            let mut words = vec![Chunk::words(head, &place)];
+            words.extend(end.words(&place));
+            self.statement(words, &place);
+        }
+        after.map_or(start, Condition::Variable)
+    }
+
+    /// A branch of tests alone, as an expression; none where a path of it is empty.
+    fn tests(&mut self, it: &Branch, place: &Range<usize>) -> Option<Option<Expression>> {
+        let mut only = true;
+        let mut all = Vec::new();
+        for path in &it.paths {
+            each(path, &mut |it| {
+                only &= row_of(&self.text.text[it.name.clone()])
+                    .is_some_and(|row| is_test(row.does) && is_counted(row, it.operands.len()))
+                    && !self.may_fault(it);
+            });
+        }
+        if !only {
+            return None;
+        }
+        for path in &it.paths {
+            match self.path(path, Condition::True, true) {
+                Condition::Expression(it) => all.push(it),
+                Condition::True | Condition::Variable(_) => return Some(None),
+            }
+        }
+        Some(Some(Expression::any(all, place)))
+    }
+
+    fn instruction(
+        &mut self,
+        it: &Instruction,
+        condition: Condition,
+        own: &mut Option<String>,
+        wanted: bool,
+    ) -> Condition {
+        let (name, place) = (self.name(it).to_owned(), self.text.place(&it.place));
+        if self.logic.names.instructions.contains_key(&key(&name)) {
+            let condition = if wanted { self.in_variable(condition, own, &place) } else { condition };
+            return self.call_instruction(it, condition, wanted);
+        }
+        let Some(row) = row_of(&name) else {
+            let message = match controller_service(&name) {
+                Some(service) => format!("`{}` is not supported: {service}", name.to_ascii_uppercase()),
+                None => format!("the instruction `{name}` is not supported"),
+            };
+            self.wrong(Trouble::NotSupported, message, &it.place);
+            return condition;
+        };
+        if !is_counted(row, it.operands.len()) {
+            self.miscounted(&name, row.operands, it);
+            return condition;
+        }
+        if let Some((message, part)) = self.wrong_operand(row, it) {
+            self.wrong(Trouble::Odd, message, &part);
+            return condition;
+        }
+        let operands: Vec<_> = it.operands.iter().map(|part| self.operand(part)).collect();
+        match row.does {
+            Does::Nothing => condition,
+            Does::Tests(test) => condition.and(Expression::new(fill(test, &operands, &[], &place)), &place),
+            Does::Compares(test) => {
+                let test = Expression::new(fill(test, &operands, &[], &place));
+                self.compared(it, condition, own, test)
+            }
+            Does::Gives(value) => {
+                let value = fill(value, &operands, &condition.words(&place), &place);
+                self.set_own(own, value, &place)
+            }
+            Does::Always(statement) => {
+                let condition = if wanted { self.in_variable(condition, own, &place) } else { condition };
+                let statement = fill(statement, &operands, &condition.words(&place), &place);
+                self.statement(statement, &place);
+                condition
+            }
+            Does::WhereTrue(statement) => {
+                let condition = if wanted { self.in_variable(condition, own, &place) } else { condition };
+                self.where_true(&condition, fill(statement, &operands, &[], &place), &place);
+                condition
+            }
+            Does::Computes(statement) => {
+                let condition = if wanted { self.in_variable(condition, own, &place) } else { condition };
+                let operands = self.computed(it, operands, &place);
+                self.where_true(&condition, fill(statement, &operands, &[], &place), &place);
+                condition
+            }
+            Does::Special(special) => {
+                let is_test = is_test(row.does);
+                let condition = if wanted && !is_test { self.in_variable(condition, own, &place) } else { condition };
+                self.special(special, it, &operands, condition, own)
+            }
+        }
+    }
+
+    /// What is wrong with an operand, whatever the tags are.
+    fn wrong_operand(&self, row: &Row, it: &Instruction) -> Option<(String, Range<usize>)> {
+        let name = self.name(it);
+        for (at, part) in it.operands.iter().enumerate() {
+            let operand = row.operands.get(at).copied().unwrap_or("operand");
+            let text = self.operand_text(part);
+            let is_shown = ["Preset", "Accum"].contains(&operand);
+            if text.is_empty() {
+                return Some((format!("the {operand} of `{name}` is missing"), it.place.clone()));
+            }
+            if text == "?" && !is_shown {
+                return Some((format!("the {operand} of `{name}` was not entered"), part.clone()));
+            }
+            let is_written = ["Destination", "Output Bit", "Storage Bit", "Size"].contains(&operand);
+            if is_written && !text.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_' || it == '\\') {
+                return Some((format!("the {operand} of `{name}` is a tag, not `{text}`"), part.clone()));
+            }
+        }
+        None
+    }
+
+    /// The condition where a comparison holds, which a false rung does not look at.
+    pub fn compared(
+        &mut self,
+        it: &Instruction,
+        condition: Condition,
+        own: &mut Option<String>,
+        test: Expression,
+    ) -> Condition {
+        let place = self.text.place(&it.place);
+        if matches!(condition, Condition::True) || !self.may_fault(it) {
+            return condition.and(test, &place);
+        }
+        let before = condition.words(&place);
+        let after = self.set_own(own, before, &place);
+        let value = [after.words(&place), vec![Chunk::words(" := ", &place)], test.words].concat();
+        self.where_true(&after, value, &place);
+        after
+    }
+
+    /// Whether a comparison may end in a fault: by an index, or by a division.
+    fn may_fault(&self, it: &Instruction) -> bool {
+        let is_contact = ["XIC", "XIO"].iter().any(|own| own.eq_ignore_ascii_case(self.name(it)));
+        !is_contact && it.operands.iter().any(|part| may_fault(self.operand_text(part)))
+    }
+
+    pub fn name(&self, it: &Instruction) -> &str {
+        &self.text.text[it.name.clone()]
+    }
+
+    pub fn operand_text(&self, part: &Range<usize>) -> &str {
+        &self.text.text[part.clone()]
+    }
+
+    /// An operand where others are beside it.
+    pub fn operand(&self, part: &Range<usize>) -> Vec<Chunk> {
+        let words = self.text.part(part);
+        if !self.operand_text(part).starts_with('-') {
+            return words;
+        }
+        let place = self.text.place(part);
+        let mut all = vec![Chunk::words("(", &place)];
+        all.extend(words);
+        all.push(Chunk::words(")", &place));
+        all
+    }
+
+    /// The operands of arithmetic: what is stored in a REAL is computed in REALs, by 1756-RM006K, p. 541: operands of one
+    /// instruction are converted to the highest of their types.
+    fn computed(&self, it: &Instruction, operands: Vec<Vec<Chunk>>, place: &Range<usize>) -> Vec<Vec<Chunk>> {
+        let ty = |part: &Range<usize>| self.logic.type_of(self.operand_text(part));
+        let last = operands.len() - 1;
+        let Some(destination) = it.operands.last().and_then(ty) else { return operands };
+        if last == 1 {
+            return self.moved(it, operands, &destination, place);
+        }
+        let Some(real) = Some(destination).filter(|it| is_real(it)) else { return operands };
+        let convert = |(at, words): (usize, Vec<Chunk>)| {
+            let text = self.operand_text(&it.operands[at]);
+            if at == last {
+                return words;
+            }
+            if text.bytes().all(|it| it.is_ascii_digit()) {
+                return [words, vec![Chunk::words(".0", place)]].concat();
+            }
+            match self.logic.type_of(text).filter(|it| !is_real(it)) {
+                Some(ty) => {
+                    let head = Chunk::words(format!("{ty}_TO_{real}("), place);
+                    [vec![head], words, vec![Chunk::words(")", place)]].concat()
+                }
+                None => words,
+            }
+        };
+        operands.into_iter().enumerate().map(convert).collect()
+    }
+
+    /// The operands of `MOV`.
+    fn moved(&self, it: &Instruction, operands: Vec<Vec<Chunk>>, ty: &str, place: &Range<usize>) -> Vec<Vec<Chunk>> {
+        let text = self.operand_text(&it.operands[0]);
+        let is_fraction = text.parse::<f64>().is_ok_and(|it| it.fract() != 0.0);
+        if !is_fraction || bits_of(ty).is_none() {
+            return operands;
+        }
+        let [head, tail] = [format!("REAL_TO_{ty}("), ")".to_owned()].map(|it| vec![Chunk::words(it, place)]);
+        vec![[head, operands[0].clone(), tail].concat(), operands[1].clone()]
+    }
+
+    /// The condition, in a variable if it is an expression.
+    fn in_variable(&mut self, condition: Condition, own: &mut Option<String>, place: &Range<usize>) -> Condition {
+        match condition {
+            Condition::True | Condition::Variable(_) => condition,
+            Condition::Expression(it) => self.set_own(own, it.words, place),
+        }
+    }
+
+    /// A path has one variable, which others do not read any more when it gets another value.
+    fn set_own(&mut self, own: &mut Option<String>, value: Vec<Chunk>, place: &Range<usize>) -> Condition {
+        let name = own.take().unwrap_or_else(|| self.variable());
+        let mut words = vec![Chunk::words(format!("{name} := "), place)];
+        words.extend(value);
+        self.statement(words, place);
+        *own = Some(name.clone());
+        Condition::Variable(name)
+    }
+
+    /// A further variable for a condition.
+    fn variable(&mut self) -> String {
+        self.used += 1;
+        let name = match self.used {
+            1 => format!("{}_rung", self.routine),
+            more => format!("{}_rung_{more}", self.routine),
+        };
+        self.declared(name, "BOOL")
+    }
+
+    /// A variable of the routine, by a name that no tag has.
+    pub fn declared(&mut self, name: String, ty: &'static str) -> String {
+        self.declare(name, ty, false)
+    }
+
+    /// The number of the RET with operands that a routine returned by.
+    pub fn return_of(&mut self, routine: &str) -> String {
+        self.declare(format!("{routine}_return"), "DINT", true)
+    }
+
+    fn declare(&mut self, mut name: String, ty: &'static str, is_shared: bool) -> String {
+        while self.logic.scope.tags.contains(&key(&name)) || self.logic.names.controller.tags.contains(&key(&name)) {
+            name.push('_');
+        }
+        if !self.out.variables.iter().any(|it| it.name == name) {
+            self.out.variables.push(Variable { name: name.clone(), ty, is_shared });
+        }
+        name
+    }
+
+    /// Where the condition is true, leaves the part by these statements.
+    pub fn leave(&mut self, condition: &Condition, statements: Vec<Chunk>, place: &Range<usize>) {
+        self.leaves |= matches!(condition, Condition::True);
+        self.where_true(condition, statements, place);
+    }
+
+    pub fn where_true(&mut self, condition: &Condition, statements: Vec<Chunk>, place: &Range<usize>) {
+        if matches!(condition, Condition::True) {
+            return self.statement(statements, place);
+        }
+        let mut words = vec![Chunk::words("IF ", place)];
+        words.extend(condition.words(place));
+        words.push(Chunk::words(" THEN ", place));
+        words.extend(statements);
+        words.push(Chunk::words("; END_IF", place));
+        self.statement(words, place);
+    }
+
+    pub fn statement(&mut self, words: Vec<Chunk>, place: &Range<usize>) {
+        self.out.chunks.extend(words);
+        self.out.chunks.push(Chunk::words(";\n", place));
+    }
+
+    /// Notes what is wrong with a part of the rung.
+    pub fn wrong(&mut self, trouble: Trouble, message: String, part: &Range<usize>) {
+        let message = format!("rung {} of `{}`: {message}", self.text.number, self.routine);
+        self.out.chunks.push(Chunk { place: self.text.place(part), says: Says::Wrong(trouble, message) });
+    }
+
+    pub fn miscounted(&mut self, name: &str, takes: &[&str], it: &Instruction) {
+        let named = if takes.is_empty() { String::new() } else { format!(" ({})", takes.join(", ")) };
+        let message = format!("`{name}` takes {}{named}, not {}", counted(takes.len(), "operand"), it.operands.len());
+        self.wrong(Trouble::Odd, message, &it.place);
+    }
+
+    pub fn part_variable(&mut self) -> String {
+        self.declared(format!("{}_part", self.routine), "DINT")
+    }
+
+    /// Writes what begins or ends parts, of which one has a number.
+    fn between_parts(&mut self, words: impl Fn(&Parts, &str, usize, bool) -> String) {
+        if self.parts.form == Form::Straight {
+            return;
+        }
+        let (part, place) = (self.part_variable(), self.text.place(&(0..self.text.text.len())));
+        let words = words(self.parts, &part, self.part, self.leaves);
+        self.out.chunks.push(Chunk::words(words, &place));
+    }
+}
+
+/// Whether it is no more than a condition.
+fn is_test(does: Does) -> bool {
+    use super::rows::Special::{AlwaysFalse, Compare, Limit};
+    matches!(does, Does::Tests(_) | Does::Compares(_) | Does::Nothing | Does::Special(AlwaysFalse | Compare | Limit))
+}
+
+/// Whether an operand has an index that is no number, or divides.
+fn may_fault(operand: &str) -> bool {
+    let mut indices = operand.split('[').skip(1).map(|it| it.split(']').next().unwrap_or_default());
+    let is_number = |it: &str| it.bytes().all(|it| it.is_ascii_digit() || it == b',' || it == b' ');
+    let divides = operand.contains('/') || operand.to_ascii_uppercase().contains("MOD");
+    divides || indices.any(|it| !is_number(it))
+}
+
+fn is_counted(row: &Row, count: usize) -> bool {
+    // The preset and the accumulated value are shown; the tag holds them.
+    let may_be_one = row.operands.ends_with(&["Preset", "Accum"]);
+    row.operands == ANY || row.operands.len() == count || may_be_one && count == 1
+}
+
+/// `1 operand`, `2 operands`
+pub fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+/// How many bits an integer type has.
+pub fn bits_of(ty: &str) -> Option<usize> {
+    const BITS: [(&str, usize); 8] = [
+        ("SINT", 8),
+        ("USINT", 8),
+        ("INT", 16),
+        ("UINT", 16),
+        ("DINT", 32),
+        ("UDINT", 32),
+        ("LINT", 64),
+        ("ULINT", 64),
+    ];
+    BITS.iter().find(|it| it.0.eq_ignore_ascii_case(ty)).map(|it| it.1)
+}
+
+fn is_real(ty: &str) -> bool {
+    ty.eq_ignore_ascii_case("REAL") || ty.eq_ignore_ascii_case("LREAL")
+}
+
+/// A row's text with operands in their places.
+pub fn fill(text: &str, operands: &[Vec<Chunk>], rung: &[Chunk], place: &Range<usize>) -> Vec<Chunk> {
+    let mut words = Vec::new();
+    for piece in text.split_inclusive('}') {
+        let (before, name) = piece.split_once('{').unwrap_or((piece, ""));
+        if !before.is_empty() {
+            words.push(Chunk::words(before, place));
+        }
+        match name.trim_end_matches('}') {
+            "" => {}
+            "rung" => words.extend_from_slice(rung),
+            number => {
+                words.extend(number.parse().ok().and_then(|it: usize| operands.get(it)).into_iter().flatten().cloned())
+            }
+        }
+    }
+    words
+}

@@ -1,0 +1,235 @@
+//! Rungs of Logix as neutral text, `XIC(limit_switch_1)CTU(counter_1,10,0);`, among the declarations and statements of a file in
+//! Structured Text. Rungs that follow one another are made statements as those of a routine are.
+
+use super::assembly::{Assembly, Chunk, Says, Trouble};
+use super::l5x::{Ladder, Logic, Names, Scope, Shown, Text, is_rung, shown, starts_as_rung, statements};
+use core::ops::Range;
+use rustc_hash::FxHashMap;
+
+/// The text with statements for its rungs; `None` where it has none.
+pub fn read(text: &str) -> Option<Assembly> {
+    // Every file is searched.
+    memchr::memmem::find(text.as_bytes(), b"XI")?;
+    if !["XIC(", "XIO("].iter().any(|it| text.contains(it)) {
+        return None;
+    }
+    let mut scanner = Scanner::new(text);
+    scanner.run();
+    // One instruction alone may as well be a call.
+    if !scanner.rungs.iter().any(|it| it.is_certain) || scanner.rungs.iter().any(|it| it.unit.is_none()) {
+        return None;
+    }
+    Some(assembled(text, &scanner))
+}
+
+/// A rung, and where it is.
+struct Found {
+    place: Range<usize>,
+    /// It can be nothing else.
+    is_certain: bool,
+    /// Rungs between which nothing is have one number.
+    group: usize,
+    /// The unit that it is in.
+    unit: Option<usize>,
+}
+
+/// A POU or an ACTION.
+struct Unit<'t> {
+    name: &'t str,
+    is_action: bool,
+    /// Where more variables may be declared.
+    variables: usize,
+}
+
+struct Scanner<'t> {
+    text: &'t str,
+    at: usize,
+    units: Vec<Unit<'t>>,
+    rungs: Vec<Found>,
+    group: usize,
+    /// Whether the last that was read was a rung.
+    in_group: bool,
+}
+
+impl<'t> Scanner<'t> {
+    fn new(text: &'t str) -> Self {
+        Self { text, at: 0, units: Vec::new(), rungs: Vec::new(), group: 0, in_group: false }
+    }
+
+    fn run(&mut self) {
+        // A rung is a statement: it begins where one may.
+        let mut begins = true;
+        while self.at < self.text.len() {
+            let rest = &self.text[self.at..];
+            if let Some(length) = blank(rest) {
+                self.at += length;
+                continue;
+            }
+            if begins && starts_as_rung(rest) && self.rung() {
+                continue;
+            }
+            self.in_group = false;
+            let word = word(rest);
+            if word.is_empty() {
+                begins = rest.starts_with(';');
+                self.at += rest.chars().next().map_or(1, char::len_utf8);
+                continue;
+            }
+            self.at += word.len();
+            begins = self.keyword(word);
+        }
+    }
+
+    /// Whether a statement begins after a word; notes units.
+    fn keyword(&mut self, word: &'t str) -> bool {
+        let is = |it: &str| word.eq_ignore_ascii_case(it);
+        let is_action = is("ACTION");
+        if is_action || ["PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "METHOD"].iter().any(|it| is(it)) {
+            let rest = self.text[self.at..].trim_start();
+            let name = self::word(rest);
+            self.at = self.text.len() - rest.len() + name.len();
+            let variables = self.units.iter().rev().find(|it| is_action && !it.is_action).map(|it| it.variables);
+            self.units.push(Unit { name, is_action, variables: variables.unwrap_or(self.at) });
+            return is("PROGRAM") || is("FUNCTION_BLOCK") || is_action;
+        }
+        if is("END_VAR")
+            && let Some(unit) = self.units.last_mut()
+        {
+            unit.variables = self.at;
+        }
+        ["END_VAR", "THEN", "ELSE", "DO", "REPEAT", "END_ACTION", "END_METHOD"].iter().any(|it| is(it))
+    }
+
+    /// Takes a rung, if one is here.
+    fn rung(&mut self) -> bool {
+        let rest = &self.text[self.at..];
+        let length = rest.find(';').map_or(rest.len(), |it| it + 1);
+        let Some(is_certain) = is_rung(&rest[..length]) else { return false };
+        self.group += usize::from(!self.in_group);
+        let unit = self.units.len().checked_sub(1);
+        self.rungs.push(Found { place: self.at..self.at + length, is_certain, group: self.group, unit });
+        self.at += length;
+        self.in_group = true;
+        true
+    }
+}
+
+/// The length of space, a comment, a pragma or a string.
+fn blank(rest: &str) -> Option<usize> {
+    let until = |end: &str, from: usize| rest[from..].find(end).map_or(rest.len(), |it| from + it + end.len());
+    match rest.as_bytes() {
+        [b' ' | b'\t' | b'\r' | b'\n', ..] => Some(1),
+        [b'/', b'/', ..] => Some(until("\n", 2)),
+        [b'/', b'*', ..] => Some(until("*/", 2)),
+        [b'(', b'*', ..] => Some(until("*)", 2)),
+        [b'{', ..] => Some(until("}", 1)),
+        [b'\'', ..] => Some(until("'", 1)),
+        [b'"', ..] => Some(until("\"", 1)),
+        _ => None,
+    }
+}
+
+fn word(rest: &str) -> &str {
+    &rest[..rest.find(|it: char| !it.is_ascii_alphanumeric() && it != '_').unwrap_or(rest.len())]
+}
+
+/// What takes the place of a part of the text.
+struct Edit {
+    place: Range<usize>,
+    chunks: Vec<Chunk>,
+}
+
+fn assembled(text: &str, scanner: &Scanner<'_>) -> Assembly {
+    let (names, scope) = (Names::default(), Scope::default());
+    let actions = scanner.units.iter().filter(|it| it.is_action);
+    let actions = actions.map(|it| (it.name.to_ascii_lowercase(), it.name.to_owned())).collect();
+    let logic = Logic {
+        file: text,
+        names: &names,
+        scope: &scope,
+        actions,
+        subroutines: FxHashMap::default(),
+        first_scan: None,
+        main: "",
+    };
+    let mut edits = presets(text);
+    let last = scanner.rungs.last().map_or(0, |it| it.group);
+    let mut declared: Vec<(usize, String)> = Vec::new();
+    for group in 1..=last {
+        let rungs = || scanner.rungs.iter().filter(|it| it.group == group);
+        let Some(unit) = rungs().find_map(|it| it.unit).map(|it| &scanner.units[it]) else { continue };
+        let lines = rungs().enumerate();
+        let texts: Vec<_> = lines.map(|(number, it)| rung_text(text, number, &it.place)).collect();
+        let Ladder { chunks, variables } = statements(unit.name, &texts, &logic);
+        for it in variables {
+            let section = if unit.is_action || it.is_shared { "VAR" } else { "VAR_TEMP" };
+            declared.push((unit.variables, format!("{section} {} : {}; END_VAR", it.name, it.ty)));
+        }
+        let (first, last) = (rungs().next(), rungs().next_back());
+        let (Some(first), Some(last)) = (first, last) else { continue };
+        edits.push(Edit { place: first.place.start..last.place.end, chunks });
+    }
+    declared.sort();
+    declared.dedup();
+    for (at, words) in declared {
+        edits.push(Edit { place: at..at, chunks: vec![Chunk::words(format!("\n{words}"), &(at..at))] });
+    }
+    edits.sort_by_key(|it| it.place.start);
+    written(text, &edits)
+}
+
+fn rung_text(text: &str, number: usize, place: &Range<usize>) -> Text {
+    Text::new(text, number.to_string(), vec![Chunk::verbatim(place.clone())], place.clone())
+}
+
+/// The text with its edits.
+fn written(text: &str, edits: &[Edit]) -> Assembly {
+    let mut out = Assembly::default();
+    if !text.contains("{dialect") {
+        out.write("{dialect 'logix'}\n", &(0..0));
+    }
+    let mut from = 0;
+    for edit in edits {
+        out.copy(text, &[Chunk::verbatim(from..edit.place.start)]);
+        out.copy(text, &edit.chunks);
+        from = edit.place.end;
+    }
+    out.copy(text, &[Chunk::verbatim(from..text.len())]);
+    for problem in out.problems.iter_mut().filter(|it| it.trouble == Trouble::Odd) {
+        problem.help =
+            Some("write rungs as Logix's neutral text has them: `XIC(a)[XIO(b) ,XIC(c) ]OTE(d);`".to_owned());
+    }
+    out
+}
+
+/// The values that rungs show, where a timer or counter is declared without any: `delay : TIMER;`.
+fn presets(text: &str) -> Vec<Edit> {
+    let mut edits = Vec::new();
+    for (name, values) in shown(text) {
+        let Some(end) = declaration(text, &name) else { continue };
+        let chunks = match values {
+            Shown::Values { preset, accum } => {
+                vec![Chunk::words(format!(" := (PRE := {preset}, ACC := {accum})"), &(end..end))]
+            }
+            Shown::Several => {
+                let message = format!("rungs show different values of `{name}`, and its declaration has none");
+                vec![Chunk { place: end..end, says: Says::Wrong(Trouble::Odd, message) }]
+            }
+        };
+        edits.push(Edit { place: end..end, chunks });
+    }
+    edits
+}
+
+/// Where the declaration of one timer or counter ends that has no values.
+fn declaration(text: &str, name: &str) -> Option<usize> {
+    let lower = text.to_ascii_lowercase();
+    let is_name = |it: char| it.is_ascii_alphanumeric() || it == '_';
+    lower.match_indices(name).find_map(|(at, _)| {
+        let rest = lower[at + name.len()..].trim_start().strip_prefix(':')?.trim_start();
+        let ty = ["timer", "counter"].iter().find(|it| rest.starts_with(**it))?;
+        let end = lower.len() - rest.len() + ty.len();
+        let is_whole = !lower[..at].ends_with(is_name) && rest[ty.len()..].trim_start().starts_with(';');
+        is_whole.then_some(end)
+    })
+}
