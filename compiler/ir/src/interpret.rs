@@ -108,7 +108,19 @@ impl<'p> Interpreter<'p> {
     /// From now on the block at an offset gives what another one does, which begins as `bytes` say. Their pins are matched by
     /// what they are for. Both are function blocks: of an instruction's structure nothing is exchanged.
     pub fn compute_as(&mut self, offset: usize, blocks: [&'static BlockInfo; 2], bytes: &[u8]) {
-        self.exchange = Some(Exchange::new(offset, blocks, bytes));
+        self.exchange = Some(Exchange::new(offset, blocks, bytes, false));
+    }
+
+    /// From now on each call of the block at an offset gives what another one has [been given](Self::give) at the end of the scan.
+    pub fn show_as(&mut self, offset: usize, blocks: [&'static BlockInfo; 2], bytes: &[u8]) {
+        self.exchange = Some(Exchange::new(offset, blocks, bytes, true));
+    }
+
+    /// What the other block has at the end of the scan that comes.
+    pub fn give(&mut self, bytes: &[u8]) {
+        if let Some(exchange) = &mut self.exchange {
+            exchange.give(bytes);
+        }
     }
 
     /// After an event: `keeps` says which bytes of what computes the exchanged block it leaves as they are.

@@ -263,6 +263,20 @@ fn what_takes_the_difference_away_is_blamed() {
             "Trap 11 (`was`)",
         ),
         (
+            "beside_an_idle_counter",
+            "total, layer : CTU;",
+            "total(CU := s, R := FALSE, PV := 100); layer(CU := s, R := FALSE, PV := 2); q := layer.Q OR total.Q;",
+            ("iec", "logix"),
+            "Trap 5 (`layer`)",
+        ),
+        (
+            "counter_that_loads_another",
+            "a : CTU; b : CTD;",
+            "a(CU := s, R := FALSE, PV := 1); b(CD := FALSE, LD := a.Q, PV := 3); q := b.Q;",
+            ("iec", "logix"),
+            "Trap 5 (`a`)",
+        ),
+        (
             "fall_and_counter",
             "c : CTD; e : F_TRIG;",
             "c(CD := s, LD := FALSE, PV := 4); e(CLK := NOT s); q := e.Q AND c.Q;",

@@ -1,6 +1,6 @@
 //! One instance that is computed as another block would: what a difference between two blocks comes to in a program.
 
-use staunch_runtime::{BlockInfo, Context, Direction, Pin, Value};
+use staunch_runtime::{BlockInfo, Context, Direction, Pin, PinRole, Value};
 
 /// The instance, and what computes it.
 #[derive(Debug)]
@@ -10,13 +10,20 @@ pub(super) struct Exchange {
     other: &'static BlockInfo,
     initial: Vec<u8>,
     bytes: Vec<u8>,
+    /// The other one is not run: it has been, and its state is given before each scan.
+    is_given: bool,
     /// Every number had its value in the pin that it was given to.
     pub fits: bool,
 }
 
 impl Exchange {
-    pub fn new(offset: usize, [own, other]: [&'static BlockInfo; 2], bytes: &[u8]) -> Self {
-        Self { offset, own, other, initial: bytes.to_vec(), bytes: bytes.to_vec(), fits: true }
+    pub fn new(offset: usize, [own, other]: [&'static BlockInfo; 2], bytes: &[u8], is_given: bool) -> Self {
+        Self { offset, own, other, initial: bytes.to_vec(), bytes: bytes.to_vec(), is_given, fits: true }
+    }
+
+    /// What the other one has at the end of the scan that comes.
+    pub fn give(&mut self, bytes: &[u8]) {
+        self.bytes.copy_from_slice(bytes);
     }
 
     /// After an event, of which `keeps` says what it leaves of the bytes.
@@ -27,7 +34,7 @@ impl Exchange {
             }
         }
         let own = &mut memory[self.offset..self.offset + self.own.size];
-        self.fits &= carry([self.other, self.own], Direction::Output, &self.bytes, own);
+        self.fits &= carry([self.other, self.own], is_output, &self.bytes, own);
     }
 
     /// After a call of the block at an offset of the memory.
@@ -36,18 +43,35 @@ impl Exchange {
             return;
         }
         let bytes = &mut memory[offset..offset + self.own.size];
-        self.fits &= carry([self.own, self.other], Direction::Input, bytes, &mut self.bytes);
+        if self.is_given {
+            self.fits &= carry([self.other, self.own], shows, &self.bytes, bytes);
+            return;
+        }
+        self.fits &= carry([self.own, self.other], is_input, bytes, &mut self.bytes);
         if let Some(instruction) = self.other.instructions.first() {
             (instruction.run)(&mut self.bytes, cx, true);
         }
-        self.fits &= carry([self.other, self.own], Direction::Output, &self.bytes, bytes);
+        self.fits &= carry([self.other, self.own], is_output, &self.bytes, bytes);
     }
 }
 
+fn is_input(pin: &Pin) -> bool {
+    pin.direction == Direction::Input
+}
+
+fn is_output(pin: &Pin) -> bool {
+    pin.direction == Direction::Output
+}
+
+/// Whether it is what a counter shows: the members of a structure are no outputs.
+fn shows(pin: &Pin) -> bool {
+    matches!(pin.role, Some(PinRole::Count | PinRole::Done | PinRole::Empty))
+}
+
 /// Carries pins from one block to another. Whether every number has its value there, and not only its bits.
-fn carry([from, to]: [&BlockInfo; 2], direction: Direction, source: &[u8], target: &mut [u8]) -> bool {
+fn carry([from, to]: [&BlockInfo; 2], which: fn(&Pin) -> bool, source: &[u8], target: &mut [u8]) -> bool {
     let mut fits = true;
-    let pins = to.pins.iter().filter(|it| it.direction == direction);
+    let pins = to.pins.iter().filter(|it| which(it));
     let of_role = |pin: &Pin| from.pin_for(pin.role?);
     let pair = |pin: &'static Pin| Some((pin, of_role(pin).or_else(|| from.pin(pin.name))?));
     for (pin, given) in pins.filter_map(pair) {

@@ -6,7 +6,7 @@ use super::{Matched, Pair, Row, comparison};
 use crate::compare::program::scalar::Instance;
 use crate::machine::Interpreted;
 use staunch_host::{Event, Machine};
-use staunch_runtime::{BlockInfo, Family, PinRole};
+use staunch_runtime::{Family, PinRole};
 use std::ops::Range;
 
 /// Longer sequences are not run again.
@@ -16,7 +16,7 @@ const MAX_ROWS: usize = 20_000;
 #[derive(Clone, Debug)]
 pub enum Change {
     /// One program has what computes a counter on the other side, by its position among the counters: the first, if the
-    /// types of its pins hold that.
+    /// types of its pins hold that. A COUNTER of Logix shows what the other one has.
     Counter(usize),
     /// So too another block, by its position among those.
     Block(usize),
@@ -51,12 +51,14 @@ impl<'a> Again<'a> {
 
     /// Whether these agree at the end of the rows, where one program alone has the change.
     pub fn agrees_with(&self, change: &Change, wanted: &[Matched]) -> bool {
-        if self.pair.exchanged(change).is_some_and(|it| !it.iter().all(|it| is_plain(it.block.info()))) {
+        let exchanged = self.pair.exchanged(change);
+        if exchanged.is_some_and(|it| it.iter().any(|it| it.block.info().facts.kept.is_some())) {
             return false;
         }
         // Who keeps it in the one event may lose it in another; a count need not fit the other program's type.
         let is_kept = matches!(change, Change::Kept(_));
-        for side in (0..2).filter(|it| self.repeats[*it]) {
+        let of_logix = exchanged.and_then(|it| it.iter().position(|it| is_of_logix(it)));
+        for side in (0..2).filter(|it| self.repeats[*it] && of_logix.is_none_or(|of| of == *it)) {
             let Some(state) = self.pair.end(side, Some(change), self.rows) else { continue };
             let mut states = self.last.states.each_ref().map(Vec::as_slice);
             states[side] = &state;
@@ -88,7 +90,11 @@ impl Pair {
         if let Some([own, other]) = exchanged {
             let blocks = [own, other].map(|it| it.block.info());
             let bytes = &self.sides[1 - number].initial[other.offset..other.offset + blocks[1].size];
-            machine.interpreter().compute_as(own.offset, blocks, bytes);
+            // What several instructions make of a structure is not computed by one call of a block.
+            match is_of_logix(own) {
+                true => machine.interpreter().show_as(own.offset, blocks, bytes),
+                false => machine.interpreter().compute_as(own.offset, blocks, bytes),
+            }
         }
         let mut drive = side.drive.clone();
         drive.go_to(&side.start);
@@ -107,6 +113,10 @@ impl Pair {
                         machine.interpreter().state_mut()[bytes.clone()].copy_from_slice(&before[bytes]);
                     }
                 }
+            }
+            if let Some([_, other]) = exchanged.filter(|it| is_of_logix(it[0])) {
+                let size = other.block.info().size;
+                machine.interpreter().give(&row.states[1 - number][other.offset..other.offset + size]);
             }
             for input in &self.inputs {
                 let scalar = &side.scalars.all[input.scalars[number]];
@@ -145,7 +155,6 @@ fn keeps_count(side: &Side, block: &Instance, event: Event) -> bool {
     side.keeps(event, block.offset + at)
 }
 
-/// Whether it is a function block, all of whose memory is its own.
-fn is_plain(block: &BlockInfo) -> bool {
-    block.family != Family::Logix && block.facts.kept.is_none()
+fn is_of_logix(block: &Instance) -> bool {
+    block.block.info().family == Family::Logix
 }

@@ -72,6 +72,11 @@ impl World {
         let known: Vec<_> = computed.iter().map(|it| it.variable).collect();
         computed.extend(beyond::held_apart(pair).into_iter().filter(|it| !known.contains(&it.variable)));
         beyond::note_counters(pair, &mut computed);
+        if pair.is_ported {
+            // A counter's pins are written otherwise there: what differs by that is the counter's.
+            let ty = |it: &Candidate, side: usize| pair.scalar(side, it.variable[side]).ty.elementary();
+            computed.retain(|it| it.counters.is_empty() || ty(it, 0) != ty(it, 1));
+        }
         let sides = || pair.sides.iter().enumerate().map(|(side, it)| (it, pair.starts(side)));
         let unfollowed = sides().flat_map(|(it, starts)| unfollowed::find(&it.program, it.dialect, cycle, &starts));
         let unfollowed = unfollowed.collect();

@@ -34,9 +34,34 @@ pub fn shown(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) 
         return None;
     }
     let again = Again::new(pair, rows)?;
-    let alone = all.iter().position(|it| again.agrees_with(&it.change, &relevant.found));
+    let agrees = |it: &Suspect| again.agrees_with(&it.change, &relevant.found);
+    let alone = all.iter().position(agrees).map(|it| root_of(pair, relevant, &all, it, &agrees));
     let found = alone.or_else(|| of_several(&again, relevant, &all))?;
     Some(all.swap_remove(found))
+}
+
+/// What decides one that takes the difference away, and does so by itself.
+fn root_of(
+    pair: &Pair,
+    relevant: &Relevant,
+    all: &[Suspect],
+    mut found: usize,
+    agrees: &dyn Fn(&Suspect) -> bool,
+) -> usize {
+    let declared = |it: &Suspect| match &it.change {
+        Change::Counter(at) => pair.instances(*at)[0].field,
+        Change::Block(at) => pair.sides[0].scalars.blocks[pair.blocks[*at][0]].field,
+        Change::Kept(_) => None,
+    };
+    let decides = |a: &Suspect, b: &Suspect| match (declared(a), declared(b)) {
+        (Some(a), Some(b)) => a != b && relevant.dependencies.follow(a).contains(&b),
+        (None, _) | (_, None) => false,
+    };
+    let is_before = |it: &Suspect, found: &Suspect| decides(it, found) && !decides(found, it) && agrees(it);
+    while let Some(at) = all.iter().position(|it| is_before(it, &all[found])) {
+        found = at;
+    }
+    found
 }
 
 /// The first of those that have to be kept together.
