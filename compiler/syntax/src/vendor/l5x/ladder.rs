@@ -15,6 +15,7 @@ mod call;
 mod condition;
 mod found;
 mod jump;
+mod operands;
 mod parse;
 mod rows;
 mod shown;

@@ -2,9 +2,10 @@
 
 use super::super::super::assembly::{Chunk, Trouble};
 use super::condition::{Condition, Expression};
+use super::operands::bits_of;
 use super::parse::Instruction;
 use super::rows::{FUNCTIONS, Special};
-use super::write::{Writer, bits_of, fill};
+use super::write::{Writer, fill};
 use core::ops::Range;
 
 impl Writer<'_> {

@@ -6,8 +6,9 @@ use super::super::names::key;
 use super::super::service::controller_service;
 use super::condition::{Condition, Expression};
 use super::jump::{self, Form, Parts};
+use super::operands::is_counted;
 use super::parse::{self, Branch, Element, Instruction, Path};
-use super::rows::{ANY, Does, Row, row_of};
+use super::rows::{Does, row_of};
 use super::subroutine::each;
 use super::text::Text;
 use core::ops::Range;
@@ -232,27 +233,6 @@ impl Writer<'_> {
         }
     }
 
-    /// What is wrong with an operand, whatever the tags are.
-    fn wrong_operand(&self, row: &Row, it: &Instruction) -> Option<(String, Range<usize>)> {
-        let name = self.name(it);
-        for (at, part) in it.operands.iter().enumerate() {
-            let operand = row.operands.get(at).copied().unwrap_or("operand");
-            let text = self.operand_text(part);
-            let is_shown = ["Preset", "Accum"].contains(&operand);
-            if text.is_empty() {
-                return Some((format!("the {operand} of `{name}` is missing"), it.place.clone()));
-            }
-            if text == "?" && !is_shown {
-                return Some((format!("the {operand} of `{name}` was not entered"), part.clone()));
-            }
-            let is_written = ["Destination", "Output Bit", "Storage Bit", "Size"].contains(&operand);
-            if is_written && !text.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_' || it == '\\') {
-                return Some((format!("the {operand} of `{name}` is a tag, not `{text}`"), part.clone()));
-            }
-        }
-        None
-    }
-
     /// The condition where a comparison holds, which a false rung does not look at.
     pub fn compared(
         &mut self,
@@ -272,71 +252,12 @@ impl Writer<'_> {
         after
     }
 
-    /// Whether a comparison may end in a fault: by an index, or by a division.
-    fn may_fault(&self, it: &Instruction) -> bool {
-        let is_contact = ["XIC", "XIO"].iter().any(|own| own.eq_ignore_ascii_case(self.name(it)));
-        !is_contact && it.operands.iter().any(|part| may_fault(self.operand_text(part)))
-    }
-
     pub fn name(&self, it: &Instruction) -> &str {
         &self.text.text[it.name.clone()]
     }
 
     pub fn operand_text(&self, part: &Range<usize>) -> &str {
         &self.text.text[part.clone()]
-    }
-
-    /// An operand where others are beside it.
-    pub fn operand(&self, part: &Range<usize>) -> Vec<Chunk> {
-        let words = self.text.part(part);
-        if !self.operand_text(part).starts_with('-') {
-            return words;
-        }
-        let place = self.text.place(part);
-        let mut all = vec![Chunk::words("(", &place)];
-        all.extend(words);
-        all.push(Chunk::words(")", &place));
-        all
-    }
-
-    /// The operands of arithmetic: what is stored in a REAL is computed in REALs, by 1756-RM006K, p. 541: operands of one
-    /// instruction are converted to the highest of their types.
-    fn computed(&self, it: &Instruction, operands: Vec<Vec<Chunk>>, place: &Range<usize>) -> Vec<Vec<Chunk>> {
-        let ty = |part: &Range<usize>| self.logic.type_of(self.operand_text(part));
-        let last = operands.len() - 1;
-        let Some(destination) = it.operands.last().and_then(ty) else { return operands };
-        if last == 1 {
-            return self.moved(it, operands, &destination, place);
-        }
-        let Some(real) = Some(destination).filter(|it| is_real(it)) else { return operands };
-        let convert = |(at, words): (usize, Vec<Chunk>)| {
-            let text = self.operand_text(&it.operands[at]);
-            if at == last {
-                return words;
-            }
-            if text.bytes().all(|it| it.is_ascii_digit()) {
-                return [words, vec![Chunk::words(".0", place)]].concat();
-            }
-            match self.logic.type_of(text).filter(|it| !is_real(it)) {
-                Some(ty) => {
-                    let head = Chunk::words(format!("{ty}_TO_{real}("), place);
-                    [vec![head], words, vec![Chunk::words(")", place)]].concat()
-                }
-                None => words,
-            }
-        };
-        operands.into_iter().enumerate().map(convert).collect()
-    }
-
-    /// The operands of `MOV`.
-    fn moved(&self, it: &Instruction, operands: Vec<Vec<Chunk>>, ty: &str, place: &Range<usize>) -> Vec<Vec<Chunk>> {
-        let text = self.operand_text(&it.operands[0]);
-        let is_fraction = text.parse::<f64>().is_ok_and(|it| it.fract() != 0.0);
-        if !is_fraction || bits_of(ty).is_none() {
-            return operands;
-        }
-        let [head, tail] = [format!("REAL_TO_{ty}("), ")".to_owned()].map(|it| vec![Chunk::words(it, place)]);
-        vec![[head, operands[0].clone(), tail].concat(), operands[1].clone()]
     }
 
     /// The condition, in a variable if it is an expression.
@@ -378,7 +299,10 @@ impl Writer<'_> {
     }
 
     fn declare(&mut self, mut name: String, ty: &'static str, is_shared: bool) -> String {
-        while self.logic.scope.tags.contains(&key(&name)) || self.logic.names.controller.tags.contains(&key(&name)) {
+        let logic = self.logic;
+        while [&logic.scope.tags, &logic.names.controller.tags].iter().any(|it| it.contains(&key(&name)))
+            || logic.actions.contains_key(&key(&name))
+        {
             name.push('_');
         }
         if !self.out.variables.iter().any(|it| it.name == name) {
@@ -443,42 +367,9 @@ fn is_test(does: Does) -> bool {
     matches!(does, Does::Tests(_) | Does::Compares(_) | Does::Nothing | Does::Special(AlwaysFalse | Compare | Limit))
 }
 
-/// Whether an operand has an index that is no number, or divides.
-fn may_fault(operand: &str) -> bool {
-    let mut indices = operand.split('[').skip(1).map(|it| it.split(']').next().unwrap_or_default());
-    let is_number = |it: &str| it.bytes().all(|it| it.is_ascii_digit() || it == b',' || it == b' ');
-    let divides = operand.contains('/') || operand.to_ascii_uppercase().contains("MOD");
-    divides || indices.any(|it| !is_number(it))
-}
-
-fn is_counted(row: &Row, count: usize) -> bool {
-    // The preset and the accumulated value are shown; the tag holds them.
-    let may_be_one = row.operands.ends_with(&["Preset", "Accum"]);
-    row.operands == ANY || row.operands.len() == count || may_be_one && count == 1
-}
-
 /// `1 operand`, `2 operands`
 pub fn counted(count: usize, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
-}
-
-/// How many bits an integer type has.
-pub fn bits_of(ty: &str) -> Option<usize> {
-    const BITS: [(&str, usize); 8] = [
-        ("SINT", 8),
-        ("USINT", 8),
-        ("INT", 16),
-        ("UINT", 16),
-        ("DINT", 32),
-        ("UDINT", 32),
-        ("LINT", 64),
-        ("ULINT", 64),
-    ];
-    BITS.iter().find(|it| it.0.eq_ignore_ascii_case(ty)).map(|it| it.1)
-}
-
-fn is_real(ty: &str) -> bool {
-    ty.eq_ignore_ascii_case("REAL") || ty.eq_ignore_ascii_case("LREAL")
 }
 
 /// A row's text with operands in their places.
