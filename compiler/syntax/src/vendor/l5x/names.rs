@@ -232,3 +232,18 @@ pub fn split(operand: &str) -> (&str, &str) {
     let end = operand.find(|it: char| !it.is_ascii_alphanumeric() && it != '_' && it != ':');
     operand.split_at(end.unwrap_or(operand.len()))
 }
+
+/// How many bits an integer type has.
+pub fn bits_of(ty: &str) -> Option<usize> {
+    const BITS: [(&str, usize); 8] = [
+        ("SINT", 8),
+        ("USINT", 8),
+        ("INT", 16),
+        ("UINT", 16),
+        ("DINT", 32),
+        ("UDINT", 32),
+        ("LINT", 64),
+        ("ULINT", 64),
+    ];
+    BITS.iter().find(|it| it.0.eq_ignore_ascii_case(ty)).map(|it| it.1)
+}

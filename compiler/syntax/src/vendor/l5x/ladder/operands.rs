@@ -1,8 +1,9 @@
 //! The operands of instructions: what is wrong with them, and how they are written.
 
 use super::super::super::assembly::Chunk;
+use super::super::names::bits_of;
 use super::parse::Instruction;
-use super::rows::{ANY, Row};
+use super::rows::Row;
 use super::write::Writer;
 use core::ops::Range;
 
@@ -94,28 +95,6 @@ fn may_fault(operand: &str) -> bool {
     let is_number = |it: &str| it.bytes().all(|it| it.is_ascii_digit() || it == b',' || it == b' ');
     let divides = operand.contains('/') || operand.to_ascii_uppercase().contains("MOD");
     divides || indices.any(|it| !is_number(it))
-}
-
-/// Whether an instruction has as many operands as it takes.
-pub fn is_counted(row: &Row, count: usize) -> bool {
-    // The preset and the accumulated value are shown; the tag holds them.
-    let may_be_one = row.operands.ends_with(&["Preset", "Accum"]);
-    row.operands == ANY || row.operands.len() == count || may_be_one && count == 1
-}
-
-/// How many bits an integer type has.
-pub fn bits_of(ty: &str) -> Option<usize> {
-    const BITS: [(&str, usize); 8] = [
-        ("SINT", 8),
-        ("USINT", 8),
-        ("INT", 16),
-        ("UINT", 16),
-        ("DINT", 32),
-        ("UDINT", 32),
-        ("LINT", 64),
-        ("ULINT", 64),
-    ];
-    BITS.iter().find(|it| it.0.eq_ignore_ascii_case(ty)).map(|it| it.1)
 }
 
 fn is_real(ty: &str) -> bool {

@@ -88,6 +88,14 @@ pub struct Row {
     pub does: Does,
 }
 
+impl Row {
+    /// Whether it has so many operands. The preset and the accumulated value are shown; the tag holds them.
+    pub fn takes(&self, count: usize) -> bool {
+        let may_be_one = self.operands.ends_with(&["Preset", "Accum"]);
+        self.operands == ANY || self.operands.len() == count || may_be_one && count == 1
+    }
+}
+
 /// What takes any number of operands counts them itself.
 pub const ANY: &[&str] = &["…"];
 

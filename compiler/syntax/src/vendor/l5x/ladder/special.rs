@@ -1,8 +1,8 @@
 //! Instructions that are more than one statement.
 
 use super::super::super::assembly::{Chunk, Trouble};
+use super::super::names::bits_of;
 use super::condition::{Condition, Expression};
-use super::operands::bits_of;
 use super::parse::Instruction;
 use super::rows::{FUNCTIONS, Special};
 use super::write::{Writer, fill};

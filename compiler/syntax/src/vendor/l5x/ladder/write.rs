@@ -6,7 +6,6 @@ use super::super::names::key;
 use super::super::service::controller_service;
 use super::condition::{Condition, Expression};
 use super::jump::{self, Form, Parts};
-use super::operands::is_counted;
 use super::parse::{self, Branch, Element, Instruction, Path};
 use super::rows::{Does, row_of};
 use super::subroutine::each;
@@ -152,7 +151,7 @@ impl Writer<'_> {
         for path in &it.paths {
             each(path, &mut |it| {
                 only &= row_of(&self.text.text[it.name.clone()])
-                    .is_some_and(|row| is_test(row.does) && is_counted(row, it.operands.len()))
+                    .is_some_and(|row| is_test(row.does) && row.takes(it.operands.len()))
                     && !self.may_fault(it);
             });
         }
@@ -188,7 +187,7 @@ impl Writer<'_> {
             self.wrong(Trouble::NotSupported, message, &it.place);
             return condition;
         };
-        if !is_counted(row, it.operands.len()) {
+        if !row.takes(it.operands.len()) {
             self.miscounted(&name, row.operands, it);
             return condition;
         }
