@@ -3,6 +3,7 @@
 
 use super::assembly::{Assembly, Chunk, Says, Trouble};
 use super::l5x::{Ladder, Logic, Names, Scope, Shown, Text, is_rung, shown, starts_as_rung, statements};
+use super::unit::length_of_text;
 use core::ops::Range;
 use rustc_hash::FxHashMap;
 
@@ -123,8 +124,7 @@ fn blank(rest: &str) -> Option<usize> {
         [b'/', b'*', ..] => Some(until("*/", 2)),
         [b'(', b'*', ..] => Some(until("*)", 2)),
         [b'{', ..] => Some(until("}", 1)),
-        [b'\'', ..] => Some(until("'", 1)),
-        [b'"', ..] => Some(until("\"", 1)),
+        [quote @ (b'\'' | b'"'), inner @ ..] => Some(1 + length_of_text(inner, *quote)),
         _ => None,
     }
 }
@@ -202,34 +202,51 @@ fn written(text: &str, edits: &[Edit]) -> Assembly {
     out
 }
 
-/// The values that rungs show, where a timer or counter is declared without any: `delay : TIMER;`.
+/// The values that rungs show become those of a timer or counter that is declared once, by itself and without any: `delay : TIMER;`.
+/// One that is declared with values has those; of any other a rung cannot show what it has.
 fn presets(text: &str) -> Vec<Edit> {
     let mut edits = Vec::new();
-    for (name, values) in shown(text) {
-        let Some(end) = declaration(text, &name) else { continue };
-        let chunks = match values {
-            Shown::Values { preset, accum } => {
-                vec![Chunk::words(format!(" := (PRE := {preset}, ACC := {accum})"), &(end..end))]
+    for (name, (values, place)) in shown(text) {
+        let (plain, is_given) = declarations(text, &name);
+        let (at, says) = match (values, plain.as_slice()) {
+            (Shown::Values { preset: 0, accum: 0 }, _) => continue,
+            (_, []) if is_given => continue,
+            (Shown::Values { preset, accum }, [end]) if !is_given => {
+                (*end, Says::Words(format!(" := (PRE := {preset}, ACC := {accum})")))
             }
-            Shown::Several => {
+            (Shown::Values { preset, .. }, _) => {
+                let message = format!(
+                    "a rung shows the preset {preset} of `{name}`, which no declaration gives it: declare it once, by \
+                     itself, with `:= (PRE := {preset})`, or write `?` in the rung"
+                );
+                (0, Says::Wrong(Trouble::Odd, message))
+            }
+            (Shown::Several, _) => {
                 let message = format!("rungs show different values of `{name}`, and its declaration has none");
-                vec![Chunk { place: end..end, says: Says::Wrong(Trouble::Odd, message) }]
+                (0, Says::Wrong(Trouble::Odd, message))
             }
         };
-        edits.push(Edit { place: end..end, chunks });
+        let place = if at == 0 { place } else { at..at };
+        edits.push(Edit { place: at..at, chunks: vec![Chunk { place, says }] });
     }
     edits
 }
 
-/// Where the declaration of one timer or counter ends that has no values.
-fn declaration(text: &str, name: &str) -> Option<usize> {
+/// Where the declarations end of a timer or counter by itself that has no values, and whether there are some with values.
+fn declarations(text: &str, name: &str) -> (Vec<usize>, bool) {
     let lower = text.to_ascii_lowercase();
     let is_name = |it: char| it.is_ascii_alphanumeric() || it == '_';
-    lower.match_indices(name).find_map(|(at, _)| {
-        let rest = lower[at + name.len()..].trim_start().strip_prefix(':')?.trim_start();
-        let ty = ["timer", "counter"].iter().find(|it| rest.starts_with(**it))?;
-        let end = lower.len() - rest.len() + ty.len();
-        let is_whole = !lower[..at].ends_with(is_name) && rest[ty.len()..].trim_start().starts_with(';');
-        is_whole.then_some(end)
-    })
+    let (mut plain, mut is_given) = (Vec::new(), false);
+    for (at, _) in lower.match_indices(name).filter(|(at, _)| !lower[..*at].ends_with(is_name)) {
+        let rest = lower[at + name.len()..].trim_start();
+        let Some(rest) = rest.strip_prefix(':').map(str::trim_start) else { continue };
+        let Some(ty) = ["timer", "counter"].iter().find(|it| rest.starts_with(**it)) else { continue };
+        let after = rest[ty.len()..].trim_start();
+        is_given |= after.starts_with(":=");
+        // The last of several that are declared together is not by itself.
+        if after.starts_with(';') && !lower[..at].trim_end().ends_with(',') {
+            plain.push(lower.len() - rest.len() + ty.len());
+        }
+    }
+    (plain, is_given)
 }

@@ -149,7 +149,7 @@ fn open_comment(text: &str) -> Option<(usize, String)> {
 }
 
 /// The bytes up to the end of a text, or of its line, which it does not go beyond.
-fn length_of_text(inner: &[u8], quote: u8) -> usize {
+pub fn length_of_text(inner: &[u8], quote: u8) -> usize {
     let mut at = 0;
     while let Some(byte) = inner.get(at) {
         match byte {

@@ -1,5 +1,6 @@
 //! What a project's names stand for where they are written, in any case.
 
+use core::ops::Range;
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::Elementary;
 use staunch_runtime::{BLOCKS, Family};
@@ -23,8 +24,8 @@ pub struct Names {
     pub disabled_programs: FxHashSet<String>,
     /// Add-On Instructions that do something where their rung is false.
     pub runs_when_false: FxHashSet<String>,
-    /// The preset and the accumulated value that rungs show of a timer or counter.
-    pub shown: FxHashMap<String, Shown>,
+    /// The preset and the accumulated value that rungs show of a timer or counter, and where.
+    pub shown: FxHashMap<String, (Shown, Range<usize>)>,
 }
 
 /// What rungs show of a timer or counter.
@@ -235,15 +236,6 @@ pub fn split(operand: &str) -> (&str, &str) {
 
 /// How many bits an integer type has.
 pub fn bits_of(ty: &str) -> Option<usize> {
-    const BITS: [(&str, usize); 8] = [
-        ("SINT", 8),
-        ("USINT", 8),
-        ("INT", 16),
-        ("UINT", 16),
-        ("DINT", 32),
-        ("UDINT", 32),
-        ("LINT", 64),
-        ("ULINT", 64),
-    ];
-    BITS.iter().find(|it| it.0.eq_ignore_ascii_case(ty)).map(|it| it.1)
+    let repr = Elementary::named(ty)?.repr();
+    usize::try_from(repr.size() * 8).ok().filter(|_| repr.is_integer())
 }

@@ -181,7 +181,7 @@ pub fn tag<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, he
 fn shown(file: &str, element: &Element<'_>, ty: &str, dimensions: &str, names: &Names) -> Option<Chunk> {
     let is_one = ["TIMER", "COUNTER"].iter().any(|it| it.eq_ignore_ascii_case(ty));
     let name = element.attribute(file, "Name").filter(|_| is_one)?;
-    let values = |name: &str| match names.shown.get(&key(name)) {
+    let values = |name: &str| match names.shown.get(&key(name)).map(|it| it.0) {
         Some(Shown::Values { preset, accum }) => Ok(Some(format!("(PRE := {preset}, ACC := {accum})"))),
         Some(Shown::Several) => {
             Err(format!("rungs show different values of `{name}`, and the tag has no data that say which is right"))

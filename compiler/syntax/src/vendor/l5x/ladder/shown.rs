@@ -2,13 +2,14 @@
 //! as well; a tag without data has them from here.
 
 use super::super::names::{Shown, key};
+use core::ops::Range;
 use rustc_hash::FxHashMap;
 
 const INSTRUCTIONS: [&str; 5] = ["TON(", "TOF(", "RTO(", "CTU(", "CTD("];
 
-/// What the rungs of a file show, by the names of tags.
-pub fn shown(file: &str) -> FxHashMap<String, Shown> {
-    let mut found = FxHashMap::default();
+/// What the rungs of a file show, by the names of tags, and where the first does.
+pub fn shown(file: &str) -> FxHashMap<String, (Shown, Range<usize>)> {
+    let mut found: FxHashMap<_, (Shown, Range<usize>)> = FxHashMap::default();
     for name in INSTRUCTIONS {
         for (at, _) in file.match_indices(name) {
             let is_name = |it: char| it.is_ascii_alphanumeric() || it == '_';
@@ -16,9 +17,11 @@ pub fn shown(file: &str) -> FxHashMap<String, Shown> {
                 continue;
             }
             let Some((tag, values)) = operands(&file[at + name.len()..]) else { continue };
-            let kept = found.entry(key(tag)).or_insert(values);
-            if *kept != values {
-                *kept = Shown::Several;
+            let operands = &file[at + name.len()..];
+            let start = at + name.len() + operands.len() - operands.trim_start().len();
+            let kept = found.entry(key(tag)).or_insert((values, start..start + tag.len()));
+            if kept.0 != values {
+                kept.0 = Shown::Several;
             }
         }
     }
