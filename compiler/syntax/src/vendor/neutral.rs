@@ -3,8 +3,9 @@
 
 use super::assembly::{Assembly, Chunk, Says, Trouble};
 use super::l5x::{Ladder, Logic, Names, Scope, Shown, Text, is_rung, shown, starts_as_rung, statements};
-use super::unit::length_of_text;
+use crate::lex::Kind;
 use core::ops::Range;
+use logos::Logos;
 use rustc_hash::FxHashMap;
 
 /// The text with statements for its rungs; `None` where it has none.
@@ -34,10 +35,33 @@ struct Found {
     unit: Option<usize>,
 }
 
-/// A POU or an ACTION.
+/// What holds declarations and statements, and how it begins.
+enum Holds {
+    /// A PROGRAM or a FUNCTION_BLOCK.
+    Pou,
+    /// It has the variables of its POU.
+    Action,
+    /// A FUNCTION or a METHOD.
+    Routine,
+    Test,
+}
+
+impl Holds {
+    fn begun_by(word: &str) -> Option<Self> {
+        let is = |it: &str| word.eq_ignore_ascii_case(it);
+        match () {
+            () if is("PROGRAM") || is("FUNCTION_BLOCK") => Some(Self::Pou),
+            () if is("ACTION") => Some(Self::Action),
+            () if is("FUNCTION") || is("METHOD") => Some(Self::Routine),
+            () if is("TEST") => Some(Self::Test),
+            () => None,
+        }
+    }
+}
+
 struct Unit<'t> {
     name: &'t str,
-    is_action: bool,
+    kind: Holds,
     /// Where more variables may be declared.
     variables: usize,
 }
@@ -46,6 +70,8 @@ struct Scanner<'t> {
     text: &'t str,
     at: usize,
     units: Vec<Unit<'t>>,
+    /// Those that have not ended, the innermost last.
+    open: Vec<usize>,
     rungs: Vec<Found>,
     group: usize,
     /// Whether the last that was read was a rung.
@@ -54,7 +80,7 @@ struct Scanner<'t> {
 
 impl<'t> Scanner<'t> {
     fn new(text: &'t str) -> Self {
-        Self { text, at: 0, units: Vec::new(), rungs: Vec::new(), group: 0, in_group: false }
+        Self { text, at: 0, units: Vec::new(), open: Vec::new(), rungs: Vec::new(), group: 0, in_group: false }
     }
 
     fn run(&mut self) {
@@ -83,22 +109,68 @@ impl<'t> Scanner<'t> {
 
     /// Whether a statement begins after a word; notes units.
     fn keyword(&mut self, word: &'t str) -> bool {
-        let is = |it: &str| word.eq_ignore_ascii_case(it);
-        let is_action = is("ACTION");
-        if is_action || ["PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "METHOD"].iter().any(|it| is(it)) {
-            let rest = self.text[self.at..].trim_start();
-            let name = self::word(rest);
-            self.at = self.text.len() - rest.len() + name.len();
-            let variables = self.units.iter().rev().find(|it| is_action && !it.is_action).map(|it| it.variables);
-            self.units.push(Unit { name, is_action, variables: variables.unwrap_or(self.at) });
-            return is("PROGRAM") || is("FUNCTION_BLOCK") || is_action;
+        if let Some(kind) = Holds::begun_by(word) {
+            self.unit(word, kind);
+            return true;
         }
-        if is("END_VAR")
-            && let Some(unit) = self.units.last_mut()
-        {
-            unit.variables = self.at;
+        let upper = word.to_ascii_uppercase();
+        match upper.strip_prefix("END_") {
+            Some("VAR") => {
+                if let Some(unit) = self.open.last() {
+                    self.units[*unit].variables = self.at;
+                }
+                true
+            }
+            Some(ended) if Holds::begun_by(ended).is_some() => {
+                self.open.pop();
+                true
+            }
+            Some(_) => false,
+            None => ["THEN", "ELSE", "DO", "REPEAT"].contains(&upper.as_str()),
         }
-        ["END_VAR", "THEN", "ELSE", "DO", "REPEAT", "END_ACTION", "END_METHOD"].iter().any(|it| is(it))
+    }
+
+    /// Takes the heading of a unit, whose keyword was taken.
+    fn unit(&mut self, keyword: &'t str, kind: Holds) {
+        let name = match kind {
+            Holds::Test => {
+                // The title.
+                self.pass_blank();
+                keyword
+            }
+            Holds::Pou | Holds::Action | Holds::Routine => self.name(),
+        };
+        self.at += heading(&self.text[self.at..]);
+        let variables = match kind {
+            Holds::Action => self.pou().map(|it| it.variables),
+            Holds::Pou | Holds::Routine | Holds::Test => None,
+        };
+        self.open.push(self.units.len());
+        self.units.push(Unit { name, kind, variables: variables.unwrap_or(self.at) });
+    }
+
+    /// The POU that an ACTION here belongs to: the one around it, or the one before.
+    fn pou(&self) -> Option<&Unit<'t>> {
+        let open = self.open.iter().rev().map(|it| &self.units[*it]);
+        open.chain(self.units.iter().rev()).find(|it| matches!(it.kind, Holds::Pou))
+    }
+
+    /// Takes a unit's name, after `FINAL` and the like.
+    fn name(&mut self) -> &'t str {
+        loop {
+            self.pass_blank();
+            let word = word(&self.text[self.at..]);
+            self.at += word.len();
+            if !MODIFIERS.iter().any(|it| word.eq_ignore_ascii_case(it)) {
+                return word;
+            }
+        }
+    }
+
+    fn pass_blank(&mut self) {
+        while let Some(length) = blank(&self.text[self.at..]) {
+            self.at += length;
+        }
     }
 
     /// Takes a rung, if one is here.
@@ -107,7 +179,7 @@ impl<'t> Scanner<'t> {
         let length = rest.find(';').map_or(rest.len(), |it| it + 1);
         let Some(is_certain) = is_rung(&rest[..length]) else { return false };
         self.group += usize::from(!self.in_group);
-        let unit = self.units.len().checked_sub(1);
+        let unit = self.open.last().copied();
         self.rungs.push(Found { place: self.at..self.at + length, is_certain, group: self.group, unit });
         self.at += length;
         self.in_group = true;
@@ -115,16 +187,56 @@ impl<'t> Scanner<'t> {
     }
 }
 
+const MODIFIERS: [&str; 8] =
+    ["PUBLIC", "PRIVATE", "PROTECTED", "INTERNAL", "FINAL", "ABSTRACT", "OVERRIDE", "OVERLOAD"];
+
+/// The length of what may follow a unit's name: `: INT`, `EXTENDS Base IMPLEMENTS Reader, Writer`.
+fn heading(text: &str) -> usize {
+    let mut at = 0;
+    let mut end = 0;
+    // A word belongs to the heading after one of these.
+    let mut expects = false;
+    while at < text.len() {
+        let rest = &text[at..];
+        let word = word(rest);
+        if let Some(length) = blank(rest) {
+            at += length;
+        } else if let Some(':' | ',' | '.') = rest.chars().next() {
+            at += 1;
+            expects = true;
+        } else if rest.starts_with(['[', '(']) {
+            at += rest.find([']', ')']).map_or(rest.len(), |it| it + 1);
+            end = at;
+        } else if !word.is_empty() && (expects || continues_heading(word)) {
+            at += word.len();
+            end = at;
+            expects = continues_heading(word);
+        } else {
+            break;
+        }
+    }
+    end
+}
+
+/// Whether a word of a heading has another after it.
+fn continues_heading(word: &str) -> bool {
+    ["EXTENDS", "IMPLEMENTS", "ARRAY", "OF", "POINTER", "REFERENCE", "TO", "REF_TO"]
+        .iter()
+        .any(|it| word.eq_ignore_ascii_case(it))
+}
+
 /// The length of space, a comment, a pragma or a string.
 fn blank(rest: &str) -> Option<usize> {
-    let until = |end: &str, from: usize| rest[from..].find(end).map_or(rest.len(), |it| from + it + end.len());
-    match rest.as_bytes() {
-        [b' ' | b'\t' | b'\r' | b'\n', ..] => Some(1),
-        [b'/', b'/', ..] => Some(until("\n", 2)),
-        [b'/', b'*', ..] => Some(until("*/", 2)),
-        [b'(', b'*', ..] => Some(until("*)", 2)),
-        [b'{', ..] => Some(until("}", 1)),
-        [quote @ (b'\'' | b'"'), inner @ ..] => Some(1 + length_of_text(inner, *quote)),
+    match rest.as_bytes().first()? {
+        b' ' | b'\t' | b'\r' | b'\n' => Some(1),
+        b'/' | b'(' | b'{' | b'\'' | b'"' => {
+            let (kind, place) = Kind::lexer(rest).spanned().next()?;
+            let is_blank = matches!(
+                kind.ok()?,
+                Kind::Comment | Kind::Pragma | Kind::Text | Kind::WideText | Kind::OpenText
+            );
+            is_blank.then_some(place.end)
+        }
         _ => None,
     }
 }
@@ -141,7 +253,7 @@ struct Edit {
 
 fn assembled(text: &str, scanner: &Scanner<'_>) -> Assembly {
     let (names, scope) = (Names::default(), Scope::default());
-    let actions = scanner.units.iter().filter(|it| it.is_action);
+    let actions = scanner.units.iter().filter(|it| matches!(it.kind, Holds::Action));
     let actions = actions.map(|it| (it.name.to_ascii_lowercase(), it.name.to_owned())).collect();
     let logic = Logic {
         file: text,
@@ -162,7 +274,7 @@ fn assembled(text: &str, scanner: &Scanner<'_>) -> Assembly {
         let texts: Vec<_> = lines.map(|(number, it)| rung_text(text, number, &it.place)).collect();
         let Ladder { chunks, variables } = statements(unit.name, &texts, &logic);
         for it in variables {
-            let section = if unit.is_action || it.is_shared { "VAR" } else { "VAR_TEMP" };
+            let section = if matches!(unit.kind, Holds::Action) || it.is_shared { "VAR" } else { "VAR_TEMP" };
             declared.push((unit.variables, format!("{section} {} : {}; END_VAR", it.name, it.ty)));
         }
         let (first, last) = (rungs().next(), rungs().next_back());
