@@ -277,6 +277,29 @@ fn what_takes_the_difference_away_is_blamed() {
             "Trap 5 (`a`)",
         ),
         (
+            // Of the three counts, Logix would have one more if it counted what is TRUE at the start.
+            "level_from_the_start",
+            "c : CTU;",
+            "c(CU := s, RESET := FALSE, PV := 3); q := c.Q;",
+            ("cscape", "logix"),
+            "Trap 1 (`c`)",
+        ),
+        (
+            "edge_at_the_start",
+            "c : CTU;",
+            "c(CU := s, RESET := FALSE, PV := 1); q := c.Q;",
+            ("cscape", "logix"),
+            "Trap 5 (`c`)",
+        ),
+        (
+            "negative_load",
+            "c : CTD;",
+            "c(CD := FALSE, LOAD := s, PV := -2); q := c.Q;",
+            ("cscape", "logix"),
+            "Trap 21 (`c`)",
+        ),
+        ("negative_load_of_a_block", "c : CTD;", "c(FALSE, s, -2); q := NOT c.Q;", ("iec", "cscape"), "Trap 21 (`c`)"),
+        (
             "fall_and_counter",
             "c : CTD; e : F_TRIG;",
             "c(CD := s, LD := FALSE, PV := 4); e(CLK := NOT s); q := e.Q AND c.Q;",

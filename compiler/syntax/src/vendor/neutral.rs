@@ -231,10 +231,8 @@ fn blank(rest: &str) -> Option<usize> {
         b' ' | b'\t' | b'\r' | b'\n' => Some(1),
         b'/' | b'(' | b'{' | b'\'' | b'"' => {
             let (kind, place) = Kind::lexer(rest).spanned().next()?;
-            let is_blank = matches!(
-                kind.ok()?,
-                Kind::Comment | Kind::Pragma | Kind::Text | Kind::WideText | Kind::OpenText
-            );
+            let is_blank =
+                matches!(kind.ok()?, Kind::Comment | Kind::Pragma | Kind::Text | Kind::WideText | Kind::OpenText);
             is_blank.then_some(place.end)
         }
         _ => None,

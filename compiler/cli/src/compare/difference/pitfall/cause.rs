@@ -3,7 +3,7 @@
 use super::advice::{Counting, Form, Rules};
 use super::classify::{Habits, Kind, classify, counts_without_edge};
 use super::list::Pitfall;
-use super::parting::{Parting, agrees, case, case_in, kind, other_block, parting};
+use super::parting::{Parting, agrees, by_what_it_shows, case, case_in, kind, other_block, parting};
 use super::relevant::Relevant;
 use super::suspects::{kept_by_one, shown};
 use crate::compare::pair::{Matched, Pair, Row};
@@ -88,6 +88,9 @@ pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habit
     }
     if let Some((block, pitfall)) = first_other_block(pair, rows, &relevant) {
         return Cause { counter: Some(block), pitfall: Some(pitfall) };
+    }
+    if let Some((counter, pitfall)) = by_what_it_shows(pair, rows, habits, &relevant) {
+        return Cause { counter: Some(counter), pitfall: Some(pitfall) };
     }
     let widths = differences.iter().any(|[a, b]| {
         let [a, b] = [pair.scalar(0, *a), pair.scalar(1, *b)];

@@ -133,6 +133,18 @@ impl Case {
         })
     }
 
+    /// A negative preset is another number on the other side.
+    pub(super) fn has_other_preset(&self) -> bool {
+        let [a, b] = self.now;
+        a.preset != b.preset && self.is_wider() && (a.preset < 0 || b.preset < 0)
+    }
+
+    /// Q of CSCAPE asks for a count of 0, that of others for one below it, too.
+    pub(super) fn is_empty_on_one(&self) -> bool {
+        let [a, b] = self.now;
+        self.parts(Family::Cscape) && self.counts_down && a.count == b.count && a.count < 0
+    }
+
     /// What the counter is given differs: what is upstream of it has parted.
     pub(super) fn given_differs(&self) -> bool {
         let logix = self.has(Family::Logix);
@@ -162,7 +174,7 @@ pub fn classify(case: &Case) -> Option<Pitfall> {
 /// Where no event has parted it.
 fn of_scan(case: &Case) -> Option<usize> {
     let [a, b] = case.now;
-    if a.preset != b.preset && case.is_wider() && (a.preset < 0 || b.preset < 0) {
+    if case.has_other_preset() {
         Some(8)
     } else if a.count != b.count {
         counts(case)
@@ -238,11 +250,11 @@ fn outputs(case: &Case) -> Option<usize> {
     if (a.done, a.empty) == (b.done, b.empty) || a.preset != b.preset && !case.is_wider() {
         return None;
     }
+    if case.is_empty_on_one() {
+        return Some(21);
+    }
     if case.parts(Family::Logix) {
         return Some(if case.counts_down { 4 } else { 13 });
-    }
-    if case.parts(Family::Cscape) && a.count < 0 && case.counts_down {
-        return Some(3);
     }
     if case.is_wider() && (a.preset < 0 || a.count < 0) {
         return Some(8);

@@ -107,6 +107,9 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         20 if !parts(Family::S7) => Some("S7 is neither, or both, of the two systems"),
         20 if !has(PinRole::Load) => Some("it has no LD"),
         20 => (a.loads_once == b.loads_once).then_some("LD loads in the same way on both systems"),
+        21 => no_cscape
+            .or(no_down)
+            .or((a.repr.is_signed() != b.repr.is_signed()).then_some("one of the two has no negative count")),
         _ if !parts_openplc => Some("OPENPLC is neither, or both, of the two systems"),
         _ => (a.stops == b.stops && goes_below(a) == goes_below(b)).then_some("the other system stops as OPENPLC does"),
     }

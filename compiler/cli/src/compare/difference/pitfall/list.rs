@@ -7,7 +7,7 @@ use staunch_frontend::Dialect;
 pub struct Pitfall(usize);
 
 /// In brackets, what is said where one of the systems before the stroke is compared.
-const PITFALLS: [&str; 20] = [
+const PITFALLS: [&str; 21] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
     "Past PV: [cscape|the count of CSCAPE stays at PV; ][codesys|the count of a CTU of CODESYS and TwinCAT stays at PV with `ctu-stop-at-pv = true`; ]others continue to count. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
     "CTD at 0: [iec|IEC goes negative; ][siemens|S7 goes negative; ][logix|Logix goes negative; ][cscape|CSCAPE stays at 0; ][codesys|CODESYS stays at 0; ]",
@@ -28,6 +28,7 @@ const PITFALLS: [&str; 20] = [
     "Both edges of a CTUD in one call: OPENPLC4 counts up, then down, so at PV it counts down; on the others CV stays.",
     "TON, TOF and TP on OPENPLC, before and from v4.1, see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
     "LD held TRUE: S7 with `s7-ld = \"edge\"` loads PV in its first call; the others in each, so that CV follows PV and is PV when R goes.",
+    "Q of a CTD whose count is negative, as after a load of a negative PV: CSCAPE compares `CV = 0`, the others `CV <= 0`.",
 ];
 
 impl Pitfall {
@@ -37,6 +38,12 @@ impl Pitfall {
     /// Of timers.
     pub const LATER_CALL: Self = Self::numbered(19);
     pub const WIDTHS: Self = Self::numbered(8);
+    /// CU is a level on CSCAPE.
+    pub const LEVEL: Self = Self::numbered(1);
+    /// What is TRUE at start-up is no edge to Logix.
+    pub const START: Self = Self::numbered(5);
+    /// Of a negative count.
+    pub const BELOW: Self = Self::numbered(21);
     /// What is not about how a counter counts.
     pub const OF_MORE: [Self; 4] = [Self::numbered(9), Self::RESTART, Self::FIRST_FALL, Self::LATER_CALL];
 

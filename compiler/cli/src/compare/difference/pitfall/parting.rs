@@ -2,10 +2,12 @@
 
 use super::classify::{Case, Habits, Kind, Pins, classify};
 use super::list::Pitfall;
+use super::relevant::Relevant;
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::scalar::Instance;
 use staunch_host::Event;
-use staunch_runtime::PinRole;
+use staunch_runtime::{Family, PinRole};
+use std::collections::HashSet;
 
 /// What the last scan has made of a counter: `None` if it does not differ because of it, and within it no
 /// pitfall where none explains it.
@@ -102,8 +104,46 @@ pub fn parting(pair: &Pair, rows: &[Row], counter: usize, habits: Habits) -> Opt
         let agreed = outputs.iter().all(|it| agrees(pair, rows, at, *it));
         let parts = outputs.iter().any(|it| !pair.same(*it, &rows[at]));
         let case = (agreed && parts).then(|| case_in(pair, rows, at, counter, habits)).flatten()?;
-        let pitfall = classify(&case)?;
+        let pitfall = match classify(&case)? {
+            Pitfall::START if counts_by_level(pair, rows, counter, habits) => Pitfall::LEVEL,
+            pitfall => pitfall,
+        };
         Some(Parting { counter, row: at, pitfall, is_root: !case.given_differs() })
+    })
+}
+
+/// Whether CSCAPE counts what has no edge, so that at the end the counts are further apart than by one that Logix leaves out at the
+/// start.
+fn counts_by_level(pair: &Pair, rows: &[Row], counter: usize, habits: Habits) -> bool {
+    let case = |at: usize| case_in(pair, rows, at, counter, habits);
+    let Some(last) = rows.len().checked_sub(1).and_then(case) else { return false };
+    let Some(side) = last.kinds.iter().position(|it| it.family == Family::Cscape) else { return false };
+    let counts = |it: &Case| {
+        let [before, now] = [it.before[side], it.now[side]];
+        before.count != now.count && (before.up && now.up || before.down && now.down)
+    };
+    let [a, b] = last.now;
+    a.count.abs_diff(b.count) > 1 && (0..rows.len()).filter_map(case).any(|it| counts(&it))
+}
+
+/// A counter that counts the same on both sides, of which the program computes what only Q would show of a block: its path, and
+/// the pitfall.
+pub fn by_what_it_shows(
+    pair: &Pair,
+    rows: &[Row],
+    habits: &[Habits],
+    relevant: &Relevant,
+) -> Option<(String, Pitfall)> {
+    let last = rows.len().checked_sub(1)?;
+    let decides = |counter: &usize| relevant.has(pair.instances(*counter)[0].field, &HashSet::new());
+    (0..habits.len()).filter(decides).find_map(|counter| {
+        let case = case_in(pair, rows, last, counter, habits[counter])?;
+        let pitfall = match () {
+            () if case.is_empty_on_one() => Pitfall::BELOW,
+            () if case.has_other_preset() => Pitfall::WIDTHS,
+            () => return None,
+        };
+        Some((pair.instances(counter)[0].path.clone(), pitfall))
     })
 }
 

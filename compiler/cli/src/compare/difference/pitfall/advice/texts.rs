@@ -328,6 +328,13 @@ pub const TO_LOGIX: &[Advice] = &[
          c.PRE := preset; c.CU := FALSE; CTU(c, edge); RES(c, clear); full := c.ACC >= c.PRE;`, with `full` in place of Q.",
     ),
     advice(
+        "preset of a WORD",
+        &[8],
+        &[Codesys],
+        &[Logix],
+        "Give a preset that can be negative as the WORD that it is to CODESYS: `c.PRE := WORD_TO_DINT(INT_TO_WORD(preset));`.",
+    ),
+    advice(
         "limit of the old type",
         &[8],
         NOT_CSCAPE,
