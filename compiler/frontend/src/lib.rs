@@ -360,6 +360,11 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::Odd => (Code::E0033, "correct it in the original system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
         Trouble::Open => (Code::E0003, "close it where it ends"),
+        Trouble::OtherOrder => (
+            Code::W0528,
+            "OpenPLC Editor before it was in Python 3, and Beremiz before April 2023, go from top to bottom: check which order is \
+             meant, and give the elements an execution order",
+        ),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or convert it in the original system"),
     };
     Diagnostic::new(code, span, problem.message.clone()).help(problem.help.as_deref().unwrap_or(help))

@@ -191,6 +191,7 @@ codes! {
     W0525 Warning "a lower unit of a TIME overflows";
     W0526 Warning "a body reads its own EN";
     W0527 Warning "a check that CODESYS calls implicitly";
+    W0528 Warning "a diagram that other versions execute in another order";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";

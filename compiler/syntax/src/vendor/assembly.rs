@@ -42,6 +42,8 @@ pub enum Trouble {
     Odd,
     /// A comment that takes in what follows.
     Open,
+    /// A diagram that other versions of its editor execute in another order.
+    OtherOrder,
 }
 
 /// The text, and what it is made of.

@@ -1,14 +1,16 @@
 //! PLCopen XML (TC6), as CODESYS, TwinCAT, Beremiz and OpenPLC's editor write it: declarations are elements, bodies are
-//! escaped text. CODESYS adds declarations as text, and methods, properties and lists, to the standard's elements.
+//! escaped text or diagrams. CODESYS adds declarations as text, and methods, properties and lists, to the standard's elements.
 
 mod declaration;
+mod diagram;
 mod tasks;
 
-use super::assembly::{Assembly, Chunk, Trouble};
+use super::assembly::{self, Assembly, Chunk, Trouble};
 use super::unit::{Body, Unit, What};
 use super::xml::{Broken, Element, Part, Reader};
 use core::ops::Range;
 use declaration::interface;
+use diagram::{Declared, Names, Refusal, Says, Written};
 
 /// Whether the root `project` is PLCopen's: by its namespace, or by what is in it, as CODESYS 3.3 wrote it without one.
 pub fn is_project(file: &str, root: &Range<usize>) -> bool {
@@ -26,7 +28,9 @@ pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
         out.write("{dialect 'codesys'}\n", &reader.last());
     }
     let mut tasks = Vec::new();
-    if let Err(broken) = project(file, &mut reader, codesys, &mut tasks, &mut out) {
+    let has_diagrams = file.contains("<LD") || file.contains("<FBD");
+    let declared = if has_diagrams { Declared::of(file) } else { Declared::default() };
+    if let Err(broken) = project(file, &mut reader, &declared, codesys, &mut tasks, &mut out) {
         let message = format!("this PLCopen XML is not well-formed: {}", broken.why);
         out.problem(Trouble::Broken, message, &broken.place);
     }
@@ -37,6 +41,7 @@ pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
 fn project<'t>(
     file: &'t str,
     reader: &mut Reader<'t>,
+    declared: &Declared,
     codesys: bool,
     tasks: &mut Vec<Chunk>,
     out: &mut Assembly,
@@ -48,8 +53,12 @@ fn project<'t>(
                 let chunks = declaration::data_type(file, reader, &element)?;
                 out.copy(file, &chunks);
             }
-            "pou" => unit(file, reader, What::Unit, element)?.write(file, out),
-            "Interface" => unit(file, reader, What::Unit, element)?.write(file, out),
+            "pou" | "Interface" => {
+                let name = element.attribute(file, "name").unwrap_or_default();
+                let says = Says { declared, pou: name, is_codesys: codesys };
+                let mut diagrams = Diagrams { says, names: Names::default(), variables: Vec::new() };
+                unit(file, reader, What::Unit, element, &mut diagrams)?.write(file, out);
+            }
             "globalVars" => {
                 if let (true, Some(name)) = (codesys, element.attribute(file, "name")) {
                     out.write(&format!("{{gvl '{name}'}}\n"), &element.place);
@@ -71,8 +80,22 @@ fn project<'t>(
     Ok(())
 }
 
+/// What the diagrams of a POU are in, and what they need of it.
+struct Diagrams<'s> {
+    says: Says<'s>,
+    names: Names,
+    /// Variables of the POU that its actions' diagrams have added.
+    variables: Vec<(String, String)>,
+}
+
 /// A POU, a method or an accessor that was opened, to its end.
-fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element<'t>) -> Result<Unit<'t>, Broken> {
+fn unit<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    what: What,
+    element: Element<'t>,
+    diagrams: &mut Diagrams<'_>,
+) -> Result<Unit<'t>, Broken> {
     let name = element.attribute(file, "name").unwrap_or_default();
     let head = declaration::head(file, what, &element);
     let mut unit = Unit::new(what, name, element.place.clone());
@@ -93,7 +116,7 @@ fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element
                 continue;
             }
             "body" => {
-                let body = body(reader)?;
+                let body = body(file, reader, diagrams)?;
                 unit.take_body(body, element.place);
                 continue;
             }
@@ -103,7 +126,7 @@ fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element
             "GetAccessor" => What::Get,
             "SetAccessor" => What::Set,
             "actions" | "Actions" | "Methods" | "Properties" | "addData" | "data" => {
-                parts(file, reader, &mut unit)?;
+                parts(file, reader, &mut unit, diagrams)?;
                 continue;
             }
             _ => {
@@ -111,14 +134,25 @@ fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, element: Element
                 continue;
             }
         };
-        unit.parts.push(self::unit(file, reader, inner, element)?);
+        unit.parts.push(self::unit(file, reader, inner, element, diagrams)?);
     }
     unit.end = reader.last();
+    // An action has the variables of its POU.
+    if what != What::Action && !diagrams.variables.is_empty() {
+        let lines = diagrams.variables.drain(..).map(|(name, ty)| format!("{name} : {ty};\n"));
+        let words = format!("\nVAR\n{}END_VAR\n", lines.collect::<String>());
+        unit.declaration.push(Chunk::words(words, &unit.end));
+    }
     Ok(unit)
 }
 
 /// What lies deeper in a unit, between elements that only hold others.
-fn parts<'t>(file: &'t str, reader: &mut Reader<'t>, unit: &mut Unit<'t>) -> Result<(), Broken> {
+fn parts<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    unit: &mut Unit<'t>,
+    diagrams: &mut Diagrams<'_>,
+) -> Result<(), Broken> {
     let mut open = 1_usize;
     while open > 0 {
         let element = match reader.part()? {
@@ -145,20 +179,20 @@ fn parts<'t>(file: &'t str, reader: &mut Reader<'t>, unit: &mut Unit<'t>) -> Res
                 continue;
             }
         };
-        unit.parts.push(self::unit(file, reader, what, element)?);
+        unit.parts.push(self::unit(file, reader, what, element, diagrams)?);
     }
     Ok(())
 }
 
-fn body(reader: &mut Reader<'_>) -> Result<Body, Broken> {
+fn body<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<Body, Broken> {
     let mut body = Body::None;
     while let Some(part) = reader.part()? {
         match part {
-            Part::Open(element) => match language(element.name) {
-                None if element.name == "ST" => body = Body::Text(text(reader)?),
-                None => reader.skip()?,
-                Some(language) => {
-                    body = Body::Other(language, element.place);
+            Part::Open(element) => match element.name {
+                "ST" => body = Body::Text(text(reader)?),
+                "LD" | "FBD" => body = diagram(file, reader, diagrams)?,
+                name => {
+                    body = language(name).map_or(body, |it| Body::Other(it, element.place));
                     reader.skip()?;
                 }
             },
@@ -167,6 +201,19 @@ fn body(reader: &mut Reader<'_>) -> Result<Body, Broken> {
         }
     }
     Ok(body)
+}
+
+fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<Body, Broken> {
+    let read = diagram::read(file, reader, diagrams.says, &mut diagrams.names)?;
+    Ok(Body::Text(match read {
+        Ok(Written { statements, variables, groups: _ }) => {
+            diagrams.variables.extend(variables);
+            statements
+        }
+        Err(Refusal { place, trouble, message }) => {
+            vec![Chunk { place, says: assembly::Says::Wrong(trouble, message) }]
+        }
+    }))
 }
 
 /// The text of an element, in XHTML's elements or not.
@@ -186,8 +233,6 @@ fn text(reader: &mut Reader<'_>) -> Result<Vec<Chunk>, Broken> {
 
 fn language(element: &str) -> Option<&'static str> {
     match element {
-        "LD" => Some("a ladder diagram (LD)"),
-        "FBD" => Some("a function block diagram (FBD)"),
         "SFC" => Some("a sequential function chart (SFC)"),
         "CFC" => Some("a continuous function chart (CFC)"),
         "IL" => Some("Instruction List (IL)"),

@@ -228,7 +228,7 @@ pub fn data_type<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'
 }
 
 /// The type in an element that was opened, to the element's end.
-fn ty_within<'t>(file: &'t str, reader: &mut Reader<'t>) -> Chunks {
+pub fn ty_within<'t>(file: &'t str, reader: &mut Reader<'t>) -> Chunks {
     let mut chunks = Vec::new();
     while let Some(part) = reader.part()? {
         match part {

@@ -1,0 +1,190 @@
+//! What a project declares, as far as the types of wires need it: the variables of its POUs, what its functions return, and the
+//! members of its structures.
+
+use super::super::super::xml::{Broken, Element, Part, Reader};
+use super::super::declaration::ty_within;
+use super::parse::text;
+use rustc_hash::FxHashMap;
+
+/// Variables, pins or members, by their names in capitals, with the types as they are written.
+type Typed = FxHashMap<String, String>;
+
+#[derive(Debug, Default)]
+pub struct Declared {
+    /// POUs and structures.
+    units: FxHashMap<String, Unit>,
+    globals: Typed,
+}
+
+#[derive(Debug, Default)]
+struct Unit {
+    /// Of a function.
+    result: Option<String>,
+    variables: Typed,
+}
+
+/// The blocks that a program may use without declaring them, with their pins.
+const BLOCKS: [(&str, &[(&str, &str)]); 24] = [
+    ("TON", TIMER),
+    ("TOF", TIMER),
+    ("TP", TIMER),
+    ("R_TRIG", &[("CLK", "BOOL"), ("Q", "BOOL")]),
+    ("F_TRIG", &[("CLK", "BOOL"), ("Q", "BOOL")]),
+    ("SR", &[("S1", "BOOL"), ("R", "BOOL"), ("Q1", "BOOL")]),
+    ("RS", &[("S", "BOOL"), ("R1", "BOOL"), ("Q1", "BOOL")]),
+    ("SEMA", &[("CLAIM", "BOOL"), ("RELEASE", "BOOL"), ("BUSY", "BOOL")]),
+    ("CTU", &counter("INT")),
+    ("CTU_DINT", &counter("DINT")),
+    ("CTU_LINT", &counter("LINT")),
+    ("CTU_UDINT", &counter("UDINT")),
+    ("CTU_ULINT", &counter("ULINT")),
+    ("CTD", &counter("INT")),
+    ("CTD_DINT", &counter("DINT")),
+    ("CTD_LINT", &counter("LINT")),
+    ("CTD_UDINT", &counter("UDINT")),
+    ("CTD_ULINT", &counter("ULINT")),
+    ("CTUD", &counter("INT")),
+    ("CTUD_DINT", &counter("DINT")),
+    ("CTUD_LINT", &counter("LINT")),
+    ("CTUD_UDINT", &counter("UDINT")),
+    ("CTUD_ULINT", &counter("ULINT")),
+    ("HYSTERESIS", &[("XIN1", "REAL"), ("XIN2", "REAL"), ("EPS", "REAL"), ("Q", "BOOL")]),
+];
+
+const TIMER: &[(&str, &str)] = &[("IN", "BOOL"), ("PT", "TIME"), ("Q", "BOOL"), ("ET", "TIME")];
+
+/// The pins of all three kinds.
+const fn counter(ty: &'static str) -> [(&'static str, &'static str); 9] {
+    [
+        ("CU", "BOOL"),
+        ("CD", "BOOL"),
+        ("R", "BOOL"),
+        ("LD", "BOOL"),
+        ("PV", ty),
+        ("Q", "BOOL"),
+        ("QU", "BOOL"),
+        ("QD", "BOOL"),
+        ("CV", ty),
+    ]
+}
+
+impl Declared {
+    /// Looks through a whole file. What is not well-formed is found by who reads it.
+    pub fn of(file: &str) -> Self {
+        let mut found = Self::default();
+        if let Some(mut reader) = Reader::new(file) {
+            let _ = found.read(file, &mut reader);
+        }
+        found
+    }
+
+    fn read<'t>(&mut self, file: &'t str, reader: &mut Reader<'t>) -> Result<(), Broken> {
+        while let Some(part) = reader.part()? {
+            let Part::Open(element) = part else { continue };
+            let name = || element.attribute(file, "name").unwrap_or_default().to_ascii_uppercase();
+            match element.name {
+                "pou" | "dataType" => {
+                    let unit = unit(file, reader, element.name)?;
+                    self.units.insert(name(), unit);
+                }
+                "globalVars" => self.globals.extend(unit(file, reader, element.name)?.variables),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The type of a function's result.
+    pub fn result(&self, function: &str) -> Option<&str> {
+        self.units.get(&function.to_ascii_uppercase())?.result.as_deref()
+    }
+
+    /// The type of a pin of a block, or of a member of a structure.
+    pub fn member(&self, ty: &str, name: &str) -> Option<&str> {
+        let ty = ty.to_ascii_uppercase();
+        if let Some(unit) = self.units.get(&ty) {
+            return unit.variables.get(&name.to_ascii_uppercase()).map(String::as_str);
+        }
+        let (_, pins) = BLOCKS.iter().find(|it| it.0 == ty)?;
+        pins.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
+    }
+
+    /// The type of what an expression names in a POU, `motor.speeds[2].actual`.
+    pub fn variable(&self, pou: &str, path: &str) -> Option<String> {
+        let mut parts = path.split('.');
+        let (name, depth) = element(parts.next()?)?;
+        let own = self.units.get(&pou.to_ascii_uppercase());
+        let is_result = name.eq_ignore_ascii_case(pou);
+        let first = match own.filter(|_| is_result).and_then(|it| it.result.clone()) {
+            Some(result) => result,
+            None => {
+                let name = name.to_ascii_uppercase();
+                own.and_then(|it| it.variables.get(&name)).or_else(|| self.globals.get(&name))?.clone()
+            }
+        };
+        parts.try_fold(element_type(&first, depth)?.to_owned(), |ty, part| {
+            let (name, depth) = element(part)?;
+            element_type(self.member(&ty, name)?, depth).map(ToOwned::to_owned)
+        })
+    }
+
+    /// Whether a POU has a variable of this name.
+    pub fn has(&self, pou: &str, name: &str) -> bool {
+        let found = self.units.get(&pou.to_ascii_uppercase());
+        found.is_some_and(|it| it.variables.contains_key(&name.to_ascii_uppercase()))
+    }
+}
+
+/// A name, and how many indices follow it.
+fn element(part: &str) -> Option<(&str, usize)> {
+    let (name, rest) = part.split_once('[').unwrap_or((part, ""));
+    let is_name = |it: &str| !it.is_empty() && it.chars().all(|it| it.is_alphanumeric() || it == '_');
+    let depth = if rest.is_empty() { 0 } else { 1 + rest.matches('[').count() };
+    is_name(name.trim()).then_some((name.trim(), depth))
+}
+
+/// The type of an array's elements, `depth` arrays deep.
+fn element_type(ty: &str, depth: usize) -> Option<&str> {
+    (0..depth).try_fold(ty, |ty, _| {
+        let is_array = ty.get(..5).is_some_and(|it| it.eq_ignore_ascii_case("ARRAY"));
+        let (_, of) = ty.split_once("] OF ").filter(|_| is_array)?;
+        Some(of.trim())
+    })
+}
+
+/// What a POU, a type or a list of variables declares, to its end.
+fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, name: &str) -> Result<Unit, Broken> {
+    let mut found = Unit::default();
+    let mut open = 1_usize;
+    while open > 0 {
+        match reader.part()? {
+            Some(Part::Open(element)) => match element.name {
+                "returnType" => found.result = Some(text(file, &ty_within(file, reader)?)),
+                "variable" => variable(file, reader, &element, &mut found)?,
+                // Bodies, and what an action declares, are not the unit's.
+                "body" | "actions" | "transitions" if name == "pou" => reader.skip()?,
+                _ => open += 1,
+            },
+            Some(Part::Close) => open -= 1,
+            Some(Part::Text(_)) => {}
+            None => break,
+        }
+    }
+    Ok(found)
+}
+
+fn variable<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, unit: &mut Unit) -> Result<(), Broken> {
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(inner) if inner.name == "type" => {
+                let name = element.attribute(file, "name").unwrap_or_default();
+                let ty = text(file, &ty_within(file, reader)?);
+                unit.variables.insert(name.to_ascii_uppercase(), ty);
+            }
+            Part::Open(_) => reader.skip()?,
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,219 @@
+//! The elements of LD and FBD, as the file holds them.
+
+use super::super::super::assembly::{Chunk, Says};
+use super::super::super::xml::{Broken, Element, Part, Reader};
+use super::node::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
+
+/// The elements of a diagram that was opened, to its end.
+pub fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Diagram, Broken> {
+    let mut found = Diagram::default();
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) => found.nodes.extend(node(file, reader, &element)?),
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(found)
+}
+
+fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> Result<Option<Node>, Broken> {
+    let named = |name: &str| element.attribute(file, name).unwrap_or_default().to_owned();
+    let kind = match element.name {
+        "leftPowerRail" => Kind::LeftRail,
+        "rightPowerRail" => Kind::RightRail,
+        "inVariable" => Kind::Source(Vec::new()),
+        "outVariable" => Kind::Sink(Vec::new()),
+        "inOutVariable" => Kind::Both(Vec::new()),
+        "contact" => Kind::Contact(Vec::new()),
+        "coil" => Kind::Coil(Vec::new()),
+        "block" => {
+            let name = |attribute| {
+                let chunk = element.attribute_text(file, attribute)?;
+                let text = text(file, std::slice::from_ref(&chunk));
+                (!text.is_empty()).then_some(Name { text, chunk })
+            };
+            let Some(ty) = name("typeName") else { return skipped(reader) };
+            Kind::Block { ty, instance: name("instanceName") }
+        }
+        "connector" => Kind::Connector(named("name")),
+        "continuation" => Kind::Continuation(named("name")),
+        "label" => Kind::Refused("a label"),
+        "jump" => Kind::Refused("a jump"),
+        "return" => Kind::Refused("a return"),
+        // Comments, and what vendors add.
+        _ => return skipped(reader),
+    };
+    let order = element.attribute(file, "executionOrderId").and_then(|it| it.parse().ok()).unwrap_or(0);
+    let mut node = Node {
+        id: named("localId"),
+        kind,
+        place: element.place.clone(),
+        position: Position::default(),
+        order,
+        modifier: modifier(file, element),
+        inputs: Vec::new(),
+        outputs: Vec::new(),
+    };
+    contents(file, reader, &mut node)?;
+    Ok(Some(node))
+}
+
+fn skipped(reader: &mut Reader<'_>) -> Result<Option<Node>, Broken> {
+    reader.skip()?;
+    Ok(None)
+}
+
+/// What is in an element that was opened, to its end.
+fn contents<'t>(file: &'t str, reader: &mut Reader<'t>, node: &mut Node) -> Result<(), Broken> {
+    while let Some(part) = reader.part()? {
+        let element = match part {
+            Part::Open(element) => element,
+            Part::Close => break,
+            Part::Text(_) => continue,
+        };
+        match element.name {
+            "position" => {
+                node.position = position(file, &element);
+                reader.skip()?;
+            }
+            "connectionPointIn" => {
+                let wires = wires(file, reader)?;
+                node.inputs.push(Input { formal: String::new(), modifier: Modifier::default(), wires });
+            }
+            "connectionPointOut" => {
+                let at = output_position(file, reader)?;
+                node.outputs.push(Output { formal: String::new(), modifier: Modifier::default(), at });
+            }
+            "expression" | "variable" => {
+                let written = reader.content("")?;
+                match &mut node.kind {
+                    Kind::Source(it) | Kind::Sink(it) | Kind::Both(it) | Kind::Contact(it) | Kind::Coil(it) => {
+                        *it = written;
+                    }
+                    Kind::LeftRail
+                    | Kind::RightRail
+                    | Kind::Block { .. }
+                    | Kind::Connector(_)
+                    | Kind::Continuation(_)
+                    | Kind::Refused(_) => {}
+                }
+            }
+            "inputVariables" | "inOutVariables" | "outputVariables" => pins(file, reader, node)?,
+            _ => reader.skip()?,
+        }
+    }
+    Ok(())
+}
+
+/// The pins of a block; one with both connection points is an input and an output.
+fn pins<'t>(file: &'t str, reader: &mut Reader<'t>, node: &mut Node) -> Result<(), Broken> {
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if element.name == "variable" => pin(file, reader, &element, node)?,
+            Part::Open(_) => reader.skip()?,
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(())
+}
+
+fn pin<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, node: &mut Node) -> Result<(), Broken> {
+    let formal = element.attribute(file, "formalParameter").unwrap_or_default();
+    let modifier = modifier(file, element);
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if element.name == "connectionPointIn" => {
+                let wires = wires(file, reader)?;
+                node.inputs.push(Input { formal: formal.to_owned(), modifier, wires });
+            }
+            Part::Open(element) if element.name == "connectionPointOut" => {
+                let at = output_position(file, reader)?;
+                node.outputs.push(Output { formal: formal.to_owned(), modifier, at });
+            }
+            Part::Open(_) => reader.skip()?,
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(())
+}
+
+fn wires<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Vec<Wire>, Broken> {
+    let mut found = Vec::new();
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) if element.name == "connection" => {
+                let named = |name: &str| element.attribute(file, name).map(ToOwned::to_owned);
+                let (from, formal) = (named("refLocalId").unwrap_or_default(), named("formalParameter"));
+                let mut end = None;
+                while let Some(part) = reader.part()? {
+                    match part {
+                        Part::Open(point) => {
+                            end = (point.name == "position").then(|| position(file, &point)).or(end);
+                            reader.skip()?;
+                        }
+                        Part::Close => break,
+                        Part::Text(_) => {}
+                    }
+                }
+                found.push(Wire { from, formal, end, place: element.place });
+            }
+            Part::Open(_) => reader.skip()?,
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(found)
+}
+
+/// Where an output is in its element, which was opened.
+fn output_position<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Option<Position>, Broken> {
+    let mut at = None;
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Open(element) => {
+                at = (element.name == "relPosition").then(|| position(file, &element)).or(at);
+                reader.skip()?;
+            }
+            Part::Close => break,
+            Part::Text(_) => {}
+        }
+    }
+    Ok(at)
+}
+
+fn position<'t>(file: &'t str, element: &Element<'t>) -> Position {
+    let of = |name: &str| element.attribute(file, name)?.trim().parse().ok();
+    Position { x: of("x").unwrap_or(0), y: of("y").unwrap_or(0) }
+}
+
+fn modifier<'t>(file: &'t str, element: &Element<'t>) -> Modifier {
+    let of = |name: &str| element.attribute(file, name);
+    let storage = match of("storage") {
+        Some("set") => Some(Storage::Set),
+        Some("reset") => Some(Storage::Reset),
+        Some(_) | None => None,
+    };
+    let edge = match of("edge") {
+        Some("rising") => Some(Edge::Rising),
+        Some("falling") => Some(Edge::Falling),
+        Some(_) | None => None,
+    };
+    Modifier { negated: of("negated") == Some("true"), storage, edge }
+}
+
+/// What chunks of the file say.
+pub fn text(file: &str, chunks: &[Chunk]) -> String {
+    let mut said = String::new();
+    for Chunk { place, says } in chunks {
+        match says {
+            Says::Itself => said.push_str(&file[place.clone()]),
+            Says::Symbol(symbol) => said.push(*symbol),
+            Says::Words(words) => said.push_str(words),
+            Says::Wrong(..) => {}
+        }
+    }
+    said.trim().to_owned()
+}

@@ -1,0 +1,503 @@
+//! The statements of a diagram. What takes a value is written in the order of execution; before it, what its value comes from and
+//! was not executed yet. Results of functions are kept in variables, as they are where a wire comes back to what was executed
+//! before: it carries what the last scan left.
+
+use super::super::super::assembly::{Chunk, Trouble};
+use super::expression::{Expression, LONGEST};
+use super::node::{Diagram, Edge, Kind, Modifier, Node, Storage, Wire};
+use super::order::in_order;
+use super::types::Types;
+use super::{Names, Says};
+use core::ops::Range;
+use rustc_hash::{FxHashMap, FxHashSet};
+use std::rc::Rc;
+
+/// No diagram has as many elements in a row.
+const DEEPEST: usize = 500;
+
+/// Why a diagram is refused, and where.
+#[derive(Debug)]
+pub struct Refusal {
+    pub place: Range<usize>,
+    pub trouble: Trouble,
+    pub message: String,
+}
+
+type Of<T> = Result<T, Refusal>;
+
+/// What a diagram becomes.
+#[derive(Debug, Default)]
+pub struct Written {
+    pub statements: Vec<Chunk>,
+    /// Variables that it needs, with their types.
+    pub variables: Vec<(String, String)>,
+    /// The elements in the order of execution, with the statements of each.
+    pub groups: Vec<(usize, Range<usize>)>,
+}
+
+/// How a value is asked for.
+#[derive(Clone, Copy, Default)]
+struct Asked {
+    /// What has a place in the order of execution is not executed before it.
+    ordered: bool,
+    /// By a VAR_IN_OUT, which takes a variable.
+    in_out: bool,
+}
+
+pub struct Writer<'w> {
+    file: &'w str,
+    diagram: &'w Diagram,
+    types: &'w Types<'w>,
+    says: Says<'w>,
+    names: &'w mut Names,
+    written: Written,
+    executed: FxHashSet<usize>,
+    connectors: FxHashMap<String, Rc<Expression>>,
+    /// What wires carry, by the pins that they come from: up to the next call.
+    carried: FxHashMap<Vec<(usize, usize)>, Rc<Expression>>,
+    /// What is being found.
+    open: FxHashSet<usize>,
+    depth: usize,
+}
+
+impl<'w> Writer<'w> {
+    pub fn new(
+        file: &'w str,
+        diagram: &'w Diagram,
+        types: &'w Types<'w>,
+        says: Says<'w>,
+        names: &'w mut Names,
+    ) -> Self {
+        Self {
+            file,
+            diagram,
+            types,
+            says,
+            names,
+            written: Written::default(),
+            executed: FxHashSet::default(),
+            connectors: FxHashMap::default(),
+            carried: FxHashMap::default(),
+            open: FxHashSet::default(),
+            depth: 0,
+        }
+    }
+
+    pub fn run(mut self) -> Of<Written> {
+        let refused = self.diagram.nodes.iter().find_map(|it| match it.kind {
+            Kind::Refused(what) => Some((it, what)),
+            Kind::LeftRail
+            | Kind::RightRail
+            | Kind::Source(_)
+            | Kind::Sink(_)
+            | Kind::Both(_)
+            | Kind::Contact(_)
+            | Kind::Coil(_)
+            | Kind::Block { .. }
+            | Kind::Connector(_)
+            | Kind::Continuation(_) => None,
+        });
+        if let Some((node, what)) = refused {
+            return Err(refuse(node, Trouble::NotSupported, format!("{what} in a diagram is not supported")));
+        }
+        for at in in_order(self.diagram, self.says.is_codesys) {
+            self.carried.clear();
+            let start = self.written.statements.len();
+            self.element(at)?;
+            self.written.groups.push((at, start..self.written.statements.len()));
+        }
+        Ok(self.written)
+    }
+
+    fn element(&mut self, at: usize) -> Of<()> {
+        let node = &self.diagram.nodes[at];
+        match &node.kind {
+            Kind::Sink(target) | Kind::Both(target) => self.assignment(node, target),
+            Kind::Coil(target) => self.coil(node, target),
+            Kind::Block { .. } => self.execute(at, Asked::default()),
+            Kind::Connector(name) => self.connector(name, node, Asked::default()).map(|_| ()),
+            Kind::LeftRail
+            | Kind::RightRail
+            | Kind::Source(_)
+            | Kind::Contact(_)
+            | Kind::Continuation(_)
+            | Kind::Refused(_) => Ok(()),
+        }
+    }
+
+    fn wires_of(node: &Node) -> &[Wire] {
+        node.inputs.first().map_or(&[], |it| it.wires.as_slice())
+    }
+
+    fn assignment(&mut self, node: &'w Node, target: &[Chunk]) -> Of<()> {
+        let wires = Self::wires_of(node);
+        let Some(value) = self.value(wires, Asked::default())? else { return Ok(()) };
+        let value = if node.modifier.negated { Expression::not(value) } else { value };
+        let enabled = self.enabled(wires);
+        let statement = |writer: &mut Self| writer.assign(node, target, &value);
+        match enabled {
+            Some(enabled) => {
+                self.words(&format!("IF {enabled} THEN "), node);
+                statement(self);
+                self.words("END_IF;\n", node);
+            }
+            None => statement(self),
+        }
+        Ok(())
+    }
+
+    /// ENO of the block that the only wire comes from, if EN decides whether it is executed.
+    fn enabled(&self, wires: &[Wire]) -> Option<String> {
+        let [wire] = wires else { return None };
+        let at = self.types.node(&wire.from)?;
+        let node = &self.diagram.nodes[at];
+        match &node.kind {
+            Kind::Block { ty, instance } if node.has_enable() => Some(match instance {
+                Some(instance) if !self.says.is_codesys => format!("{}.ENO", instance.text),
+                Some(_) | None => result(&ty.text, node, "ENO"),
+            }),
+            _ => None,
+        }
+    }
+
+    fn coil(&mut self, node: &'w Node, target: &[Chunk]) -> Of<()> {
+        let Some(value) = self.value(Self::wires_of(node), Asked::default())? else { return Ok(()) };
+        match node.modifier {
+            Modifier { negated: false, storage: Some(storage), .. } => {
+                self.words("IF ", node);
+                value.write(&node.place, &mut self.written.statements);
+                self.words(" THEN ", node);
+                let to = match storage {
+                    Storage::Set => "TRUE",
+                    Storage::Reset => "FALSE",
+                };
+                self.assign(node, target, &Expression::name(to, &node.place));
+                self.words("END_IF;\n", node);
+            }
+            modifier => {
+                let value = self.modified(node, modifier, value);
+                self.assign(node, target, &value);
+            }
+        }
+        Ok(())
+    }
+
+    fn assign(&mut self, node: &Node, target: &[Chunk], value: &Expression) {
+        self.written.statements.extend(target.iter().cloned());
+        self.words(" := ", node);
+        value.write(&node.place, &mut self.written.statements);
+        self.words(";\n", node);
+    }
+
+    fn words(&mut self, words: &str, node: &Node) {
+        self.written.statements.push(Chunk::words(words, &node.place));
+    }
+
+    /// A value after the sign at a pin, a contact or a coil.
+    fn modified(&mut self, node: &Node, modifier: Modifier, value: Rc<Expression>) -> Rc<Expression> {
+        match modifier {
+            Modifier { negated: true, .. } => Expression::not(value),
+            Modifier { edge: Some(edge), .. } => {
+                let ty = match edge {
+                    Edge::Rising => "R_TRIG",
+                    Edge::Falling => "F_TRIG",
+                };
+                let name = self.names.free(ty, self.says);
+                self.written.variables.push((name.clone(), ty.to_owned()));
+                self.words(&format!("{name}(CLK := "), node);
+                value.write(&node.place, &mut self.written.statements);
+                self.words(");\n", node);
+                Expression::name(&format!("{name}.Q"), &node.place)
+            }
+            Modifier { negated: false, edge: None, .. } => value,
+        }
+    }
+
+    /// What wires to one pin carry, if there are any.
+    fn value(&mut self, wires: &'w [Wire], asked: Asked) -> Of<Option<Rc<Expression>>> {
+        if wires.is_empty() {
+            return Ok(None);
+        }
+        let mut from = Vec::with_capacity(wires.len());
+        for wire in wires {
+            from.push(self.source(wire)?);
+        }
+        let mut key = from.clone();
+        key.sort_unstable();
+        if let Some(known) = self.carried.get(&key).filter(|_| !asked.in_out) {
+            return Ok(Some(known.clone()));
+        }
+        let Some(first) = wires.first() else { return Ok(None) };
+        self.depth += 1;
+        if self.depth > DEEPEST {
+            let message = format!("more than {DEEPEST} elements are wired in a row");
+            return Err(Refusal { place: first.place.clone(), trouble: Trouble::NotSupported, message });
+        }
+        let value = self.parallel(wires, &from, asked);
+        self.depth -= 1;
+        let value = value?;
+        if value.length > LONGEST {
+            let message = format!("what this wire carries takes more than {LONGEST} characters as an expression");
+            return Err(Refusal { place: first.place.clone(), trouble: Trouble::NotSupported, message });
+        }
+        self.carried.insert(key, value.clone());
+        Ok(Some(value))
+    }
+
+    /// The element and the output that a wire comes from.
+    fn source(&self, wire: &Wire) -> Of<(usize, usize)> {
+        let refuse = |message: String| Refusal { place: wire.place.clone(), trouble: Trouble::Odd, message };
+        let at = self.types.node(&wire.from);
+        let at =
+            at.ok_or_else(|| refuse(format!("this wire comes from element {}, which does not exist", wire.from)))?;
+        let node = &self.diagram.nodes[at];
+        match (&node.kind, node.output(wire)) {
+            (Kind::Block { ty, .. }, None) => {
+                let output = wire.formal.as_deref().unwrap_or("of this place");
+                Err(refuse(format!("this wire comes from an output `{output}` that `{}` does not have", ty.text)))
+            }
+            (_, output) => Ok((at, output.unwrap_or(0))),
+        }
+    }
+
+    /// One of several wires is TRUE. Contacts in parallel that are fed by the same share that.
+    fn parallel(&mut self, wires: &'w [Wire], from: &[(usize, usize)], asked: Asked) -> Of<Rc<Expression>> {
+        let mut paths: Vec<(Vec<Rc<Expression>>, Rc<Expression>)> = Vec::new();
+        for (wire, (at, output)) in wires.iter().zip(from) {
+            let (own, fed_by) = self.path(*at, *output, wire, asked)?;
+            match paths.iter_mut().find(|it| Rc::ptr_eq(&it.1, &fed_by)) {
+                Some(path) => path.0.push(own),
+                None => paths.push((vec![own], fed_by)),
+            }
+        }
+        let joined = paths.into_iter().map(|(own, fed_by)| Expression::all(vec![fed_by, Expression::any(own)]));
+        Ok(Expression::any(joined.collect()))
+    }
+
+    /// What an element gives a wire, and what it is fed by, if it only lets that through.
+    fn path(&mut self, at: usize, output: usize, wire: &Wire, asked: Asked) -> Of<(Rc<Expression>, Rc<Expression>)> {
+        let node = &self.diagram.nodes[at];
+        let alone = |value| (value, Expression::always());
+        Ok(match &node.kind {
+            Kind::LeftRail => alone(Expression::always()),
+            Kind::Source(written) | Kind::Both(written) => {
+                let value = Expression::written(self.file, written.clone());
+                alone(if node.modifier.negated { Expression::not(value) } else { value })
+            }
+            Kind::Contact(written) => {
+                let own = Expression::written(self.file, written.clone());
+                let own = self.modified(node, node.modifier, own);
+                (own, self.fed(at, asked)?)
+            }
+            Kind::Coil(_) => alone(self.fed(at, asked)?),
+            Kind::Block { .. } => alone(self.output(at, output, asked)?),
+            Kind::Continuation(name) => {
+                let is_its = |it: &&Node| matches!(&it.kind, Kind::Connector(other) if other == name);
+                let mut found = self.diagram.nodes.iter().filter(is_its);
+                let connector = found.next().filter(|_| found.next().is_none());
+                let message = || format!("the continuation `{name}` has no connector of this name, or several");
+                let connector = connector.ok_or_else(|| refuse(node, Trouble::Odd, message()))?;
+                self.enter(at)?;
+                let value = self.connector(name, connector, asked)?;
+                self.open.remove(&at);
+                alone(value.ok_or_else(|| {
+                    refuse(connector, Trouble::Odd, format!("nothing is wired to the connector `{name}`"))
+                })?)
+            }
+            Kind::Sink(_) | Kind::RightRail | Kind::Connector(_) | Kind::Refused(_) => {
+                let message = "this wire comes from an element without an output".to_owned();
+                return Err(Refusal { place: wire.place.clone(), trouble: Trouble::Odd, message });
+            }
+        })
+    }
+
+    /// What feeds a contact or a coil.
+    fn fed(&mut self, at: usize, asked: Asked) -> Of<Rc<Expression>> {
+        let node = &self.diagram.nodes[at];
+        self.enter(at)?;
+        let value = self.value(Self::wires_of(node), Asked { in_out: false, ..asked })?;
+        self.open.remove(&at);
+        let name = node.expression().map(|it| super::parse::text(self.file, it)).unwrap_or_default();
+        value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{name}` from the left")))
+    }
+
+    fn enter(&mut self, at: usize) -> Of<()> {
+        let node = &self.diagram.nodes[at];
+        match self.open.insert(at) {
+            true => Ok(()),
+            false => Err(refuse(node, Trouble::Odd, "this element is wired to itself in a circle".to_owned())),
+        }
+    }
+
+    fn connector(&mut self, name: &str, node: &'w Node, asked: Asked) -> Of<Option<Rc<Expression>>> {
+        if let Some(known) = self.connectors.get(name) {
+            return Ok(Some(known.clone()));
+        }
+        let value = self.value(Self::wires_of(node), Asked { in_out: false, ..asked })?;
+        if let Some(value) = &value {
+            self.connectors.insert(name.to_owned(), value.clone());
+        }
+        Ok(value)
+    }
+
+    /// An output of a block, which is executed before if it was not yet.
+    fn output(&mut self, at: usize, output: usize, asked: Asked) -> Of<Rc<Expression>> {
+        self.execute(at, asked)?;
+        let node = &self.diagram.nodes[at];
+        let Kind::Block { ty, instance } = &node.kind else { return Ok(Expression::always()) };
+        let Some(pin) = node.outputs.get(output) else { return Ok(Expression::always()) };
+        let asked_of_input = Asked { ordered: node.order > 0, in_out: true };
+        let value = match instance {
+            Some(instance) => {
+                let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
+                let name = match self.says.is_codesys && is_enable {
+                    true => result(&ty.text, node, "ENO"),
+                    false => format!("{}.{}", instance.text, pin.formal),
+                };
+                Expression::name(&name, &node.place)
+            }
+            None if node.is_in_out(&pin.formal) => {
+                let wires = node.input(&pin.formal).map_or(&[][..], |it| it.wires.as_slice());
+                let value = self.value(wires, asked_of_input)?;
+                value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", pin.formal)))?
+            }
+            None => Expression::name(&result(&ty.text, node, &pin.formal), &node.place),
+        };
+        let value = self.modified(node, pin.modifier, value);
+        match instance {
+            Some(instance) if asked.in_out => {
+                self.kept(at, output, &format!("{}_{}", instance.text, pin.formal), value)
+            }
+            Some(_) | None => Ok(value),
+        }
+    }
+
+    /// A variable that has an output, for a VAR_IN_OUT to take.
+    fn kept(&mut self, at: usize, output: usize, name: &str, value: Rc<Expression>) -> Of<Rc<Expression>> {
+        let node = &self.diagram.nodes[at];
+        if !self.written.variables.iter().any(|it| it.0 == name) {
+            let ty = self.type_of(at, output)?;
+            self.written.variables.push((name.to_owned(), ty));
+            self.assign(node, &[Chunk::words(name, &node.place)], &value);
+        }
+        Ok(Expression::name(name, &node.place))
+    }
+
+    fn type_of(&self, at: usize, output: usize) -> Of<String> {
+        let node = &self.diagram.nodes[at];
+        let known = self.types.output(at, output).filter(|it| !it.starts_with("ANY"));
+        known.map(ToOwned::to_owned).ok_or_else(|| {
+            let name = match &node.kind {
+                Kind::Block { ty, .. } => ty.text.as_str(),
+                _ => "this element",
+            };
+            let pin = &node.outputs[output].formal;
+            refuse(node, Trouble::Odd, format!("nothing that is wired to `{name}` says what type `{pin}` is of"))
+        })
+    }
+
+    /// Writes the call of a block, once.
+    fn execute(&mut self, at: usize, asked: Asked) -> Of<()> {
+        let node = &self.diagram.nodes[at];
+        let Kind::Block { ty, instance } = &node.kind else { return Ok(()) };
+        if asked.ordered || !self.executed.insert(at) {
+            return Ok(());
+        }
+        let mut arguments = Vec::new();
+        let mut enable = None;
+        for input in &node.inputs {
+            let in_out = node.is_in_out(&input.formal);
+            let value = self.value(&input.wires, Asked { ordered: node.order > 0, in_out })?;
+            let Some(value) = value else {
+                if in_out {
+                    return Err(refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", input.formal)));
+                }
+                continue;
+            };
+            let value = self.modified(node, input.modifier, value);
+            match self.says.is_codesys && input.formal.eq_ignore_ascii_case("EN") {
+                true => enable = Some(value),
+                false => arguments.push((input.formal.as_str(), value)),
+            }
+        }
+        if let Some(enable) = enable {
+            let name = result(&ty.text, node, "ENO");
+            self.written.variables.push((name.clone(), "BOOL".to_owned()));
+            self.assign(node, &[Chunk::words(name.as_str(), &node.place)], &enable);
+            self.words(&format!("IF {name} THEN "), node);
+            self.call(at, arguments)?;
+            self.words("END_IF;\n", node);
+        } else {
+            self.call(at, arguments)?;
+        }
+        if instance.is_some() {
+            self.carried.clear();
+        }
+        Ok(())
+    }
+
+    fn call(&mut self, at: usize, arguments: Vec<(&str, Rc<Expression>)>) -> Of<()> {
+        let node = &self.diagram.nodes[at];
+        let Kind::Block { ty, instance } = &node.kind else { return Ok(()) };
+        let mut parts: Vec<Vec<Chunk>> = Vec::new();
+        let own = |it: &str| !it.eq_ignore_ascii_case("EN");
+        if instance.is_none() && !arguments.iter().any(|it| own(it.0)) && node.inputs.iter().any(|it| own(&it.formal)) {
+            return Err(refuse(node, Trouble::Odd, format!("nothing is wired to an input of `{}`", ty.text)));
+        }
+        let connected = node.inputs.iter().all(|it| !it.wires.is_empty());
+        let is_named = instance.is_some() || node.outputs.len() > 1 || !connected || self.says.has_function(&ty.text);
+        for (formal, value) in arguments {
+            let mut part = Vec::new();
+            if is_named && !formal.is_empty() {
+                part.push(Chunk::words(format!("{formal} := "), &node.place));
+            }
+            value.write(&node.place, &mut part);
+            parts.push(part);
+        }
+        let mut target = None;
+        for (output, pin) in node.outputs.iter().enumerate().filter(|_| instance.is_none()) {
+            let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
+            if node.is_in_out(&pin.formal) || self.says.is_codesys && is_enable {
+                continue;
+            }
+            let name = result(&ty.text, node, &pin.formal);
+            let of_type = self.type_of(at, output)?;
+            self.written.variables.push((name.clone(), of_type));
+            match node.outputs.len() > 1 && !is_result(&pin.formal) {
+                true => parts.push(vec![Chunk::words(format!("{} => {name}", pin.formal), &node.place)]),
+                false => target = Some(name),
+            }
+        }
+        if let Some(target) = target {
+            self.words(&format!("{target} := "), node);
+        }
+        let name = instance.as_ref().unwrap_or(ty);
+        self.written.statements.push(name.chunk.clone());
+        self.words("(", node);
+        for (at, part) in parts.into_iter().enumerate() {
+            if at > 0 {
+                self.words(", ", node);
+            }
+            self.written.statements.extend(part);
+        }
+        self.words(");\n", node);
+        Ok(())
+    }
+}
+
+/// Whether an output of a function is what it returns.
+fn is_result(formal: &str) -> bool {
+    formal.is_empty() || formal.eq_ignore_ascii_case("OUT")
+}
+
+/// The variable that keeps an output of a function.
+fn result(ty: &str, node: &Node, formal: &str) -> String {
+    match formal {
+        "" => format!("{ty}{}", node.id),
+        _ => format!("_TMP_{ty}{}_{formal}", node.id),
+    }
+}
+
+fn refuse(node: &Node, trouble: Trouble, message: String) -> Refusal {
+    Refusal { place: node.place.clone(), trouble, message }
+}
