@@ -55,7 +55,7 @@ fn used(file: &str, statements: &[Chunk]) -> Used {
     let reads = names.map(ToOwned::to_owned).collect();
     // `x := …` and `instance(…)`, also after THEN.
     let targets = written.split(';').filter_map(|it| {
-        let statement = it.rsplit_once(" THEN ").map_or(it, |it| it.1).trim();
+        let statement = it.rsplit_once(" THEN\n").map_or(it, |it| it.1).trim();
         let end = statement.find(|it: char| !it.is_alphanumeric() && it != '_')?;
         Some(statement[..end].to_owned())
     });

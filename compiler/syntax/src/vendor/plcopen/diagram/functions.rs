@@ -86,6 +86,10 @@ pub fn signature(name: &str) -> Option<Signature> {
     row.map(|(_, inputs, output)| Signature { inputs, output })
 }
 
+pub fn is_function(name: &str) -> bool {
+    signature(name).is_some() || converted(name).is_some()
+}
+
 impl Signature {
     /// The type of an input, from 0.
     pub fn input(&self, at: usize) -> Option<&'static str> {

@@ -105,6 +105,19 @@ pub struct Output {
     pub modifier: Modifier,
     /// From the element's own position.
     pub at: Option<Position>,
+    /// The variable that CODESYS writes at the pin.
+    pub target: Vec<Chunk>,
+}
+
+impl Output {
+    /// Whether it is what a function returns, and not another output of it: CODESYS numbers it, or calls it as the function.
+    pub fn is_result(&self, function: &str) -> bool {
+        let number =
+            self.formal.get(..3).filter(|it| it.eq_ignore_ascii_case("OUT")).map(|it| &self.formal[it.len()..]);
+        self.formal.is_empty()
+            || self.formal.eq_ignore_ascii_case(function)
+            || number.is_some_and(|it| it.bytes().all(|it| it.is_ascii_digit()))
+    }
 }
 
 impl Node {

@@ -82,8 +82,7 @@ fn contents<'t>(file: &'t str, reader: &mut Reader<'t>, node: &mut Node) -> Resu
                 node.inputs.push(Input { formal: String::new(), modifier: Modifier::default(), wires });
             }
             "connectionPointOut" => {
-                let at = output_position(file, reader)?;
-                node.outputs.push(Output { formal: String::new(), modifier: Modifier::default(), at });
+                node.outputs.push(output(file, reader, "", Modifier::default())?);
             }
             "expression" | "variable" => {
                 let written = reader.content("")?;
@@ -129,8 +128,7 @@ fn pin<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, node: 
                 node.inputs.push(Input { formal: formal.to_owned(), modifier, wires });
             }
             Part::Open(element) if element.name == "connectionPointOut" => {
-                let at = output_position(file, reader)?;
-                node.outputs.push(Output { formal: formal.to_owned(), modifier, at });
+                node.outputs.push(output(file, reader, formal, modifier)?);
             }
             Part::Open(_) => reader.skip()?,
             Part::Close => break,
@@ -168,20 +166,21 @@ fn wires<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Vec<Wire>, Broken
     Ok(found)
 }
 
-/// Where an output is in its element, which was opened.
-fn output_position<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Option<Position>, Broken> {
-    let mut at = None;
+/// A connection point that was opened, to its end.
+fn output<'t>(file: &'t str, reader: &mut Reader<'t>, formal: &str, modifier: Modifier) -> Result<Output, Broken> {
+    let mut output = Output { formal: formal.to_owned(), modifier, at: None, target: Vec::new() };
     while let Some(part) = reader.part()? {
         match part {
+            Part::Open(element) if element.name == "expression" => output.target = reader.content("")?,
             Part::Open(element) => {
-                at = (element.name == "relPosition").then(|| position(file, &element)).or(at);
+                output.at = (element.name == "relPosition").then(|| position(file, &element)).or(output.at);
                 reader.skip()?;
             }
             Part::Close => break,
             Part::Text(_) => {}
         }
     }
-    Ok(at)
+    Ok(output)
 }
 
 fn position<'t>(file: &'t str, element: &Element<'t>) -> Position {

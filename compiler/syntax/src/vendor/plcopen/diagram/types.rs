@@ -3,7 +3,7 @@
 
 use super::declared::Declared;
 use super::functions::{converted, is_of_times_too, of_times, signature};
-use super::node::{Diagram, Input, Kind, Node, Wire};
+use super::node::{Diagram, Input, Kind, Node, Output, Wire};
 use super::parse::text;
 use rustc_hash::FxHashMap;
 
@@ -180,13 +180,14 @@ impl<'d> Types<'d> {
     /// A function of one signature, or an instance of a function block.
     fn block(&mut self, at: usize, node: &Node, ty: &str, is_instance: bool, declared: &Declared) {
         let signature = if is_instance { None } else { signature(ty) };
-        let of_output = |formal: &str| -> Option<String> {
+        let of_output = |pin: &Output| -> Option<String> {
+            let formal = pin.formal.as_str();
             match () {
                 () if formal.eq_ignore_ascii_case("ENO") => Some("BOOL".to_owned()),
                 () if is_instance => declared.member(ty, formal).map(ToOwned::to_owned),
                 () => {
                     let own = declared.result(ty).map(ToOwned::to_owned);
-                    let is_result = formal.is_empty() || formal.eq_ignore_ascii_case("OUT");
+                    let is_result = pin.is_result(ty);
                     let pin = || declared.member(ty, formal).map(ToOwned::to_owned);
                     let standard = || signature.as_ref().map(|it| it.output().to_owned()).or_else(|| converted(ty));
                     pin().or_else(|| own.filter(|_| is_result)).or_else(|| standard().filter(|_| is_result))
@@ -196,7 +197,7 @@ impl<'d> Types<'d> {
         let mut unknown: Vec<(String, Vec<Point>)> = Vec::new();
         for (output, pin) in node.outputs.iter().enumerate() {
             let point = self.output_point(at, output);
-            match of_output(&pin.formal) {
+            match of_output(pin) {
                 Some(ty) if ty.starts_with("ANY") => add(&mut unknown, &ty, [point]),
                 Some(ty) if self.known[point].is_none() => self.set(point, &ty),
                 Some(_) | None => {}

@@ -4,7 +4,8 @@
 
 use super::super::super::assembly::{Chunk, Trouble};
 use super::expression::{Expression, LONGEST};
-use super::node::{Diagram, Edge, Kind, Modifier, Node, Storage, Wire};
+use super::functions::is_function;
+use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Output, Storage, Wire};
 use super::order::in_order;
 use super::types::Types;
 use super::{Names, Says};
@@ -53,8 +54,10 @@ pub struct Writer<'w> {
     written: Written,
     executed: FxHashSet<usize>,
     connectors: FxHashMap<String, Rc<Expression>>,
-    /// What wires carry, by the pins that they come from: up to the next call.
-    carried: FxHashMap<Vec<(usize, usize)>, Rc<Expression>>,
+    /// What wires carry, by the pins that they come from, and by whether these were executed for that: up to the next call.
+    carried: FxHashMap<(Vec<(usize, usize)>, bool), Rc<Expression>>,
+    /// The outputs that wires come from.
+    wired: FxHashSet<(usize, usize)>,
     /// What is being found.
     open: FxHashSet<usize>,
     depth: usize,
@@ -68,7 +71,13 @@ impl<'w> Writer<'w> {
         says: Says<'w>,
         names: &'w mut Names,
     ) -> Self {
+        let wires = diagram.nodes.iter().flat_map(|it| it.inputs.iter().flat_map(|it| &it.wires));
+        let wired = wires.filter_map(|it| {
+            let at = types.node(&it.from)?;
+            Some((at, diagram.nodes[at].output(it)?))
+        });
         Self {
+            wired: wired.collect(),
             file,
             diagram,
             types,
@@ -137,7 +146,7 @@ impl<'w> Writer<'w> {
         let statement = |writer: &mut Self| writer.assign(node, target, &value);
         match enabled {
             Some(enabled) => {
-                self.words(&format!("IF {enabled} THEN "), node);
+                self.words(&format!("IF {enabled} THEN\n    "), node);
                 statement(self);
                 self.words("END_IF;\n", node);
             }
@@ -152,10 +161,7 @@ impl<'w> Writer<'w> {
         let at = self.types.node(&wire.from)?;
         let node = &self.diagram.nodes[at];
         match &node.kind {
-            Kind::Block { ty, instance } if node.has_enable() => Some(match instance {
-                Some(instance) if !self.says.is_codesys => format!("{}.ENO", instance.text),
-                Some(_) | None => result(&ty.text, node, "ENO"),
-            }),
+            Kind::Block { ty, instance } if node.has_enable() => Some(kept_result(ty, instance.as_ref(), node, "ENO")),
             _ => None,
         }
     }
@@ -166,7 +172,7 @@ impl<'w> Writer<'w> {
             Modifier { negated: false, storage: Some(storage), .. } => {
                 self.words("IF ", node);
                 value.write(&node.place, &mut self.written.statements);
-                self.words(" THEN ", node);
+                self.words(" THEN\n    ", node);
                 let to = match storage {
                     Storage::Set => "TRUE",
                     Storage::Reset => "FALSE",
@@ -222,8 +228,9 @@ impl<'w> Writer<'w> {
         for wire in wires {
             from.push(self.source(wire)?);
         }
-        let mut key = from.clone();
-        key.sort_unstable();
+        let mut pins = from.clone();
+        pins.sort_unstable();
+        let key = (pins, asked.ordered);
         if let Some(known) = self.carried.get(&key).filter(|_| !asked.in_out) {
             return Ok(Some(known.clone()));
         }
@@ -289,7 +296,18 @@ impl<'w> Writer<'w> {
                 let own = self.modified(node, node.modifier, own);
                 (own, self.fed(at, asked)?)
             }
-            Kind::Coil(_) => alone(self.fed(at, asked)?),
+            Kind::Coil(_) if self.says.is_codesys => alone(self.fed(at, asked)?),
+            // The editors join the wires to a coil by AND where something is wired to its right.
+            Kind::Coil(_) => {
+                let mut parts = Vec::new();
+                for wire in Self::wires_of(node) {
+                    parts.push(self.fed_by(at, std::slice::from_ref(wire), asked)?);
+                }
+                match parts.is_empty() {
+                    true => alone(self.fed(at, asked)?),
+                    false => alone(Expression::all(parts)),
+                }
+            }
             Kind::Block { .. } => alone(self.output(at, output, asked)?),
             Kind::Continuation(name) => {
                 let is_its = |it: &&Node| matches!(&it.kind, Kind::Connector(other) if other == name);
@@ -313,9 +331,13 @@ impl<'w> Writer<'w> {
 
     /// What feeds a contact or a coil.
     fn fed(&mut self, at: usize, asked: Asked) -> Of<Rc<Expression>> {
+        self.fed_by(at, Self::wires_of(&self.diagram.nodes[at]), asked)
+    }
+
+    fn fed_by(&mut self, at: usize, wires: &'w [Wire], asked: Asked) -> Of<Rc<Expression>> {
         let node = &self.diagram.nodes[at];
         self.enter(at)?;
-        let value = self.value(Self::wires_of(node), Asked { in_out: false, ..asked })?;
+        let value = self.value(wires, Asked { in_out: false, ..asked })?;
         self.open.remove(&at);
         let name = node.expression().map(|it| super::parse::text(self.file, it)).unwrap_or_default();
         value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{name}` from the left")))
@@ -348,20 +370,17 @@ impl<'w> Writer<'w> {
         let Some(pin) = node.outputs.get(output) else { return Ok(Expression::always()) };
         let asked_of_input = Asked { ordered: node.order > 0, in_out: true };
         let value = match instance {
-            Some(instance) => {
-                let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
-                let name = match self.says.is_codesys && is_enable {
-                    true => result(&ty.text, node, "ENO"),
-                    false => format!("{}.{}", instance.text, pin.formal),
-                };
-                Expression::name(&name, &node.place)
-            }
+            Some(_) if pin.formal.eq_ignore_ascii_case("ENO") => match node.has_enable() {
+                true => Expression::name(&kept_result(ty, instance.as_ref(), node, "ENO"), &node.place),
+                false => Expression::always(),
+            },
+            Some(instance) => Expression::name(&format!("{}.{}", instance.text, pin.formal), &node.place),
             None if node.is_in_out(&pin.formal) => {
                 let wires = node.input(&pin.formal).map_or(&[][..], |it| it.wires.as_slice());
                 let value = self.value(wires, asked_of_input)?;
                 value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", pin.formal)))?
             }
-            None => Expression::name(&result(&ty.text, node, &pin.formal), &node.place),
+            None => Expression::name(&kept_result(ty, None, node, &pin.formal), &node.place),
         };
         let value = self.modified(node, pin.modifier, value);
         match instance {
@@ -387,12 +406,14 @@ impl<'w> Writer<'w> {
         let node = &self.diagram.nodes[at];
         let known = self.types.output(at, output).filter(|it| !it.starts_with("ANY"));
         known.map(ToOwned::to_owned).ok_or_else(|| {
-            let name = match &node.kind {
-                Kind::Block { ty, .. } => ty.text.as_str(),
-                _ => "this element",
-            };
             let pin = &node.outputs[output].formal;
-            refuse(node, Trouble::Odd, format!("nothing that is wired to `{name}` says what type `{pin}` is of"))
+            let message = match &node.kind {
+                Kind::Block { ty, instance: None } if !is_function(&ty.text) && !self.says.has_function(&ty.text) => {
+                    format!("`{}` is no standard function, and the project does not declare it", ty.text)
+                }
+                _ => format!("nothing that is wired to {} says what type `{pin}` is of", node.shown(self.file)),
+            };
+            refuse(node, Trouble::Odd, message)
         })
     }
 
@@ -421,10 +442,10 @@ impl<'w> Writer<'w> {
             }
         }
         if let Some(enable) = enable {
-            let name = result(&ty.text, node, "ENO");
+            let name = kept_result(ty, instance.as_ref(), node, "ENO");
             self.written.variables.push((name.clone(), "BOOL".to_owned()));
             self.assign(node, &[Chunk::words(name.as_str(), &node.place)], &enable);
-            self.words(&format!("IF {name} THEN "), node);
+            self.words(&format!("IF {name} THEN\n    "), node);
             self.call(at, arguments)?;
             self.words("END_IF;\n", node);
         } else {
@@ -445,7 +466,9 @@ impl<'w> Writer<'w> {
             return Err(refuse(node, Trouble::Odd, format!("nothing is wired to an input of `{}`", ty.text)));
         }
         let connected = node.inputs.iter().all(|it| !it.wires.is_empty());
-        let is_named = instance.is_some() || node.outputs.len() > 1 || !connected || self.says.has_function(&ty.text);
+        // CODESYS numbers the inputs of its operators.
+        let by_name = !self.says.is_codesys && (node.outputs.len() > 1 || !connected);
+        let is_named = instance.is_some() || by_name || self.says.has_function(&ty.text);
         for (formal, value) in arguments {
             let mut part = Vec::new();
             if is_named && !formal.is_empty() {
@@ -454,22 +477,35 @@ impl<'w> Writer<'w> {
             value.write(&node.place, &mut part);
             parts.push(part);
         }
-        let mut target = None;
+        let mut target: Option<Vec<Chunk>> = None;
+        let mut is_kept = true;
         for (output, pin) in node.outputs.iter().enumerate().filter(|_| instance.is_none()) {
             let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
             if node.is_in_out(&pin.formal) || self.says.is_codesys && is_enable {
                 continue;
             }
-            let name = result(&ty.text, node, &pin.formal);
+            if pin.is_result(&ty.text) && !pin.target.is_empty() && !self.wired.contains(&(at, output)) {
+                target = Some(pin.target.clone());
+                is_kept = false;
+                continue;
+            }
+            let name = kept_result(ty, None, node, &pin.formal);
             let of_type = self.type_of(at, output)?;
             self.written.variables.push((name.clone(), of_type));
-            match node.outputs.len() > 1 && !is_result(&pin.formal) {
+            match node.outputs.len() > 1 && !pin.is_result(&ty.text) {
                 true => parts.push(vec![Chunk::words(format!("{} => {name}", pin.formal), &node.place)]),
-                false => target = Some(name),
+                false => target = Some(vec![Chunk::words(name, &node.place)]),
             }
         }
+        if instance.is_some() && node.has_enable() && !self.says.is_codesys {
+            // An instance that was never called has TRUE there.
+            let name = kept_result(ty, instance.as_ref(), node, "ENO");
+            parts.push(vec![Chunk::words(format!("ENO => {name}"), &node.place)]);
+            self.written.variables.push((name, "BOOL := TRUE".to_owned()));
+        }
         if let Some(target) = target {
-            self.words(&format!("{target} := "), node);
+            self.written.statements.extend(target);
+            self.words(" := ", node);
         }
         let name = instance.as_ref().unwrap_or(ty);
         self.written.statements.push(name.chunk.clone());
@@ -481,20 +517,26 @@ impl<'w> Writer<'w> {
             self.written.statements.extend(part);
         }
         self.words(");\n", node);
+        let assigned = |it: &&Output| !it.target.is_empty() && (is_kept || !it.is_result(&ty.text));
+        for pin in node.outputs.iter().filter(assigned) {
+            let value = match instance {
+                Some(instance) => format!("{}.{}", instance.text, pin.formal),
+                None => kept_result(ty, None, node, &pin.formal),
+            };
+            let value = Expression::name(&value, &node.place);
+            let value = self.modified(node, pin.modifier, value);
+            self.assign(node, &pin.target, &value);
+        }
         Ok(())
     }
 }
 
-/// Whether an output of a function is what it returns.
-fn is_result(formal: &str) -> bool {
-    formal.is_empty() || formal.eq_ignore_ascii_case("OUT")
-}
-
-/// The variable that keeps an output of a function.
-fn result(ty: &str, node: &Node, formal: &str) -> String {
-    match formal {
-        "" => format!("{ty}{}", node.id),
-        _ => format!("_TMP_{ty}{}_{formal}", node.id),
+/// The variable that keeps an output of a function, or ENO of an instance.
+fn kept_result(ty: &Name, instance: Option<&Name>, node: &Node, formal: &str) -> String {
+    match (instance, formal) {
+        (Some(instance), _) => format!("_TMP_{}_{formal}", instance.text),
+        (None, "") => format!("{}{}", ty.text, node.id),
+        (None, _) => format!("_TMP_{}{}_{formal}", ty.text, node.id),
     }
 }
 
