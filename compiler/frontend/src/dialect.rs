@@ -421,6 +421,11 @@ impl Dialect {
         matches!(self, Self::Openplc | Self::Openplc4)
     }
 
+    /// An address in a section of CONSTANTs, of which the editor says nothing: what has one is a variable.
+    pub(crate) const fn has_located_constants(self) -> bool {
+        matches!(self, Self::Openplc | Self::Openplc4)
+    }
+
     /// `a += b` and the like, which SIMATIC calls a combined assignment.
     pub const fn combines_assignments(self) -> bool {
         matches!(self, Self::Siemens)

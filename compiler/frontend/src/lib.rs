@@ -216,6 +216,7 @@ struct Trees<'s> {
 fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
     let sources = log.sources;
     let stubs = library::prepare(&mut files, sources);
+    stubs.refused.iter().for_each(|it| log.report(library::c_code(*it)));
     let has_tests = testing::has_tests(&files);
     testing::suite::qualify(&mut files);
     log.asked_attributes = declared::asked_attributes(&files, sources);

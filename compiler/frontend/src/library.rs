@@ -1,18 +1,22 @@
 //! Sources that a project uses and that are not its own: their PROGRAMs do not run, and nothing is said of their
 //! habits. A declaration there may be without a body, of what is not in Structured Text: it is checked as any other,
-//! but a program that calls it cannot be built.
+//! but a program that calls it cannot be built. So is a POU with code in C, wherever it is declared.
 
 use crate::ast::{ExprKind, File, Item, Pou, PouKind, each_expr};
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Severity, Sources, Span};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Location, Routine, RoutineId};
 
-/// What a library declares without a body: the places of the names.
+/// What a library declares without a body, and what has code in C: the places of the names.
 #[derive(Debug, Default)]
 pub(crate) struct Stubs {
     names: FxHashSet<Span>,
+    /// The code in C that is in one.
+    c_code: FxHashMap<Span, Span>,
+    /// Code in C that is in nothing that is called.
+    pub refused: Vec<Span>,
 }
 
 /// Takes out of libraries what only runs by itself, and gives what is without a body.
@@ -20,6 +24,16 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
     let mut stubs = Stubs::default();
     let named = programs_named(files);
     for (file, source) in files.iter_mut().zip(sources.files()) {
+        for code in std::mem::take(&mut file.c_code) {
+            match with_c_code(&mut file.items, code) {
+                Some(pou) => {
+                    pou.is_stub = true;
+                    stubs.names.insert(pou.name.span);
+                    stubs.c_code.entry(pou.name.span).or_insert(code);
+                }
+                None => stubs.refused.push(code),
+            }
+        }
         if !source.is_of_library() {
             continue;
         }
@@ -43,6 +57,27 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
         }
     }
     stubs
+}
+
+/// The FUNCTION, FUNCTION_BLOCK or routine of one that code in C is in.
+fn with_c_code<'a, 's>(items: &'a mut [Item<'s>], code: Span) -> Option<&'a mut Pou<'s>> {
+    let has = |it: &Pou<'_>| it.extent.start <= code.start && code.end <= it.extent.end;
+    let pous = items.iter_mut().filter_map(|it| match it {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    });
+    let pou = pous.into_iter().find(|it| has(it))?;
+    if let Some(at) = pou.routines.iter().position(has) {
+        return pou.routines.get_mut(at);
+    }
+    matches!(pou.kind, PouKind::Function | PouKind::FunctionBlock).then_some(pou)
+}
+
+/// Code in C where it cannot be left out.
+pub(crate) fn c_code(at: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0902, at, "code in C is not supported")
+        .label("Staunch does not compile it")
+        .help("write what it does in Structured Text, or call a FUNCTION that is `{external}`")
 }
 
 /// The PROGRAMs that some body may name, in small letters: those of a library are called then, or their METHODs are.
@@ -103,7 +138,10 @@ impl Stubs {
             return;
         }
         let sources = declarations.log.sources;
-        let is_own = |slot: &usize| !sources.get(declarations.pous[*slot].ast.span.file).is_of_library();
+        let is_own = |slot: &usize| {
+            let pou = declarations.pous[*slot].ast;
+            !sources.get(pou.span.file).is_of_library() && !self.names.contains(&pou.name.span)
+        };
         let mut missing = called((0..routines.len()).filter(is_own).collect(), routines);
         missing.retain(|(slot, _)| {
             // What starts the globals is made where an FB_init is.
@@ -114,12 +152,24 @@ impl Stubs {
         let mut said = FxHashSet::default();
         missing.retain(|(slot, _)| said.insert(declarations.pous[*slot].ast.name.span));
         for (slot, at) in missing {
-            declarations.report_without_body(slot, at);
+            match self.c_code.get(&declarations.pous[slot].ast.name.span) {
+                Some(code) => declarations.report_c_code(slot, at, *code),
+                None => declarations.report_without_body(slot, at),
+            }
         }
     }
 }
 
 impl Declarations<'_> {
+    fn report_c_code(&mut self, slot: usize, at: Location, code: Span) {
+        let title = self.title(slot);
+        let error = Diagnostic::new(Code::E0902, self.log.name_at(at), format!("`{title}` has code in C"))
+            .label("called here")
+            .other(code, "Staunch does not compile this")
+            .help("write what it does in Structured Text, or call a FUNCTION that is `{external}`");
+        self.report(error);
+    }
+
     fn report_without_body(&mut self, slot: usize, at: Location) {
         let pou = self.pous[slot].ast;
         let (title, file) = (self.title(slot), &self.log.sources.get(pou.name.span.file).path);

@@ -14,6 +14,7 @@ pub(crate) fn resolve<'s>(files: &mut [File<'s>], log: &mut Log<'s>) {
             late(address, problem, log);
         }
         file.items.iter_mut().for_each(|it| item(it, &mut |it| resolve_one(it, log)));
+        file.items.iter_mut().for_each(|it| located_constants(it, log));
     }
 }
 
@@ -79,6 +80,38 @@ fn report_alias(alias: Name<'_>, log: &mut Log<'_>) {
 }
 
 /// The declarations of variables in an item.
+/// What has an address is no CONSTANT in OpenPLC, whatever its section says: it begins with its value, and the address has what the
+/// machine writes there.
+fn located_constants<'s>(item: &mut Item<'s>, log: &Log<'s>) {
+    let split = |blocks: &mut Vec<VarBlock<'s>>| {
+        let is_mixed = |it: &VarBlock<'s>| {
+            let can_be = log.dialect(it.span).has_located_constants();
+            can_be && it.constant.is_some() && it.vars.iter().any(|it| it.address.is_some())
+        };
+        if !blocks.iter().any(is_mixed) {
+            return;
+        }
+        for block in std::mem::take(blocks) {
+            if !is_mixed(&block) {
+                blocks.push(block);
+                continue;
+            }
+            for decl in &block.vars {
+                let constant = block.constant.filter(|_| decl.address.is_none());
+                blocks.push(VarBlock { constant, vars: vec![decl.clone()], ..block.clone() });
+            }
+        }
+    };
+    match item {
+        Item::Pou(it) => split(&mut it.blocks),
+        Item::Configuration(it) => {
+            split(&mut it.globals);
+            it.resources.iter_mut().for_each(|it| split(&mut it.globals));
+        }
+        Item::Test(_) | Item::Globals(_) | Item::Types(_) => {}
+    }
+}
+
 fn item<'s>(item: &mut Item<'s>, change: &mut impl FnMut(&mut VarDecl<'s>)) {
     match item {
         Item::Pou(it) => pou(it, change),

@@ -40,6 +40,8 @@ pub struct File<'s> {
     pub late_addresses: Vec<(Name<'s>, crate::Diagnostic)>,
     /// The targets of `a [:=] b`.
     pub nonretentive: Vec<Span>,
+    /// The braces before code in C, `{{ … }}`.
+    pub c_code: Vec<Span>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.

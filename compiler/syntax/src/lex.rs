@@ -39,6 +39,8 @@ pub struct Tokens<'s> {
     pub undecided: Vec<Span>,
     /// The first CONFIGURATION that is read as a name.
     pub reserved: Option<Span>,
+    /// Each `{{ … }}`, code in C: its braces.
+    pub c_code: Vec<Span>,
 }
 
 /// Reads a text of at most `u32::MAX` bytes.
@@ -121,11 +123,7 @@ impl<'s> Reading<'s> {
         let text = self.slice(place);
         if text.starts_with("{{") && text.ends_with("}}") {
             let span = self.span((place.0, place.0 + 2));
-            self.tokens.diagnostics.push(
-                Diagnostic::new(Code::E0902, span, "code in C is not supported yet")
-                    .label("this version of Staunch cannot compile it")
-                    .help("write what it does in Structured Text"),
-            );
+            self.tokens.c_code.push(span);
         } else if text.ends_with('}') {
             let span = self.span((place.0 + 1, place.1 - 1));
             self.tokens.pragmas.push(Name { text: &text[1..text.len() - 1], span });

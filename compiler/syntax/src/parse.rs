@@ -93,7 +93,7 @@ pub fn parse_with<'s>(
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
     found.sort_by_key(|it| (it.span.start, it.span.end));
     diagnostics.append(&mut found);
-    let (undecided, reserved) = (tokens.undecided, tokens.reserved);
+    let (undecided, reserved, c_code) = (tokens.undecided, tokens.reserved, tokens.c_code);
     File {
         items,
         bindings,
@@ -105,6 +105,7 @@ pub fn parse_with<'s>(
         combined,
         late_addresses,
         nonretentive,
+        c_code,
     }
 }
 

@@ -106,7 +106,8 @@ impl<'s> Declarations<'s> {
                     .fix(whole, ""),
             );
         }
-        if let (Some(constant), false) = (block.constant, global.constant) {
+        let is_located = self.is_located_constant(global.name);
+        if let (Some(constant), false, false) = (block.constant, global.constant, is_located) {
             let message = format!("the global `{}` is not CONSTANT", global.name.text);
             self.report(
                 Diagnostic::new(Code::E0405, constant, message)
@@ -115,6 +116,13 @@ impl<'s> Declarations<'s> {
                     .help("delete CONSTANT here, or declare it in VAR_GLOBAL CONSTANT"),
             );
         }
+    }
+
+    /// A CONSTANT with an address is a variable there.
+    fn is_located_constant(&self, global: ast::Name<'s>) -> bool {
+        let can_be = self.dialect(global.span).has_located_constants();
+        let is_it = |it: &GlobalSlot<'s>| it.name.span == global.span && it.decl.address.is_some();
+        can_be && self.globals.iter().any(is_it)
     }
 
     fn external(&mut self, name: ast::Name<'s>) -> Option<Rc<Variable<'s>>> {

@@ -13,7 +13,7 @@ pub(crate) fn unassigned(decl: &Declarations<'_>) -> Vec<Diagnostic> {
         // The system asks for no result.
         .filter(|it| !INITIAL.iter().any(|name| Key(name) == Key(it.ast.name.text)))
         .filter(|it| it.ast.result.is_some() && !it.names_itself && it.ast.modifiers.is_abstract.is_none())
-        .filter(|it| it.ast.external.is_none())
+        .filter(|it| it.ast.external.is_none() && !it.ast.is_stub)
         .map(|it| it.ast.name);
     let lint = |name: ast::Name<'_>| {
         Diagnostic::new(Code::W0516, name.span, format!("the result of `{}` is never assigned", name.text))

@@ -211,6 +211,7 @@ fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'
             statements
         }
         Err(Refusal { place, trouble, message }) => {
+            let message = format!("the diagram of `{}`: {message}", diagrams.says.pou);
             vec![Chunk { place, says: assembly::Says::Wrong(trouble, message) }]
         }
     }))

@@ -109,13 +109,11 @@ fn variables<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, 
 }
 
 /// A variable of a section that begins with `head`; one that says that it is of another one is in a section of its own,
-/// so that the order stays. What has an address is no CONSTANT: it begins with its value, as OpenPLC has it.
+/// so that the order stays.
 fn variable_of<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, head: &str) -> Chunks {
     let (mut chunks, section) = variable(file, reader, element)?;
-    let is_located = element.attribute(file, "address").is_some_and(|it| !it.is_empty());
-    let located = || (is_located && head.contains(" CONSTANT")).then(|| head.replace(" CONSTANT", ""));
-    if let Some(section) = section.map(|it| format!("{it}\n")).or_else(located) {
-        chunks.insert(0, Chunk::words(format!("END_VAR\n{section}"), &element.place));
+    if let Some(section) = section {
+        chunks.insert(0, Chunk::words(format!("END_VAR\n{section}\n"), &element.place));
         chunks.push(Chunk::words(format!("END_VAR\n{head}"), &element.place));
     }
     Ok(chunks)
