@@ -299,6 +299,61 @@ fn what_takes_the_difference_away_is_blamed() {
             "Trap 21 (`c`)",
         ),
         ("negative_load_of_a_block", "c : CTD;", "c(FALSE, s, -2); q := NOT c.Q;", ("iec", "cscape"), "Trap 21 (`c`)"),
+        // RES takes the edge from the input, which then counts: its own output may as well be what resets.
+        (
+            "reset_by_its_own_output",
+            "c : CTU;",
+            "c(CU := s, R := c.Q, PV := 2); q := c.Q;",
+            ("iec", "logix"),
+            "Trap 6 (`c`)",
+        ),
+        // Q and DN part before the counts do: what differs in the end is the count.
+        (
+            "a_count_beside_an_output",
+            "c : CTU; full : BOOL;",
+            "c(CU := s, R := FALSE, PV := 0); full := c.Q; q := c.CV > 0;",
+            ("openplc", "logix"),
+            "Trap 15 (`c`)",
+        ),
+        (
+            "a_count_as_a_preset",
+            "c : CTU; d : CTD;",
+            "d(CD := s, LD := FALSE, PV := 3); c(CU := s, R := FALSE, PV := d.CV); q := c.CV > 0;",
+            ("siemens", "logix"),
+            "Trap 5 (`c`)",
+        ),
+        // The load wins: what `d` does itself is no matter.
+        (
+            "loaded_from_another",
+            "up : CTU; d : CTD;",
+            "up(CU := s, R := FALSE, PV := 3); d(CD := s, LD := s, PV := up.CV); q := d.CV > 0;",
+            ("openplc", "logix"),
+            "Trap 5 (`up`)",
+        ),
+        // RES makes the whole structure anew.
+        (
+            "read_before_it_is_called",
+            "c, d : CTU; m : BOOL;",
+            "d(CU := FALSE, R := TRUE, PV := 0); IF c.Q OR s THEN m := TRUE; END_IF; IF d.Q THEN m := FALSE; END_IF; \
+             c(CU := s, R := FALSE, PV := 1); q := m;",
+            ("iec", "logix"),
+            "Trap 13 (`d`)",
+        ),
+        (
+            "below_zero_after_a_load",
+            "d : CTD;",
+            "d(CD := NOT s, LOAD := s, PV := -2); q := d.CV < -2;",
+            ("cscape", "logix"),
+            "Trap 3 (`d`)",
+        ),
+        // The prescan has taken the input for one that was TRUE.
+        (
+            "called_later",
+            "c : CTU; auto : BOOL;",
+            "IF auto THEN c(CU := s, R := FALSE, PV := 1); END_IF; auto := TRUE; q := c.Q;",
+            ("iec", "logix"),
+            "Trap 5 (`c`)",
+        ),
         (
             "fall_and_counter",
             "c : CTD; e : F_TRIG;",
@@ -324,4 +379,15 @@ fn a_variable_that_is_not_compared_is_not_said_to_be_the_same() {
     let (_, after) = text.split_once("`busy` (retention").expect("it is listed");
     let said = after.lines().nth(1).unwrap_or_default();
     assert!(code == Some(1) && said.contains("reachable after 2 scans: trap 11"), "{text}");
+}
+
+/// `no run` speaks of the event, and makes no input of a variable of that name.
+#[test]
+fn an_event_that_does_not_happen_is_no_variable() {
+    let source = "PROGRAM p\nVAR_INPUT start : BOOL; END_VAR\nVAR run : BOOL; c : CTU; v : INT; END_VAR\n\
+                  c(CU := run AND c.CV < 2, R := FALSE, PV := 5); v := c.CV; run := start;\nEND_PROGRAM\n";
+    let assumed = OWN.written("no_events.txt", "no run\nno restart\nno reset\n");
+    let options = ["--from", "iec", "--to", "logix", "--vars", "v", "--assume", &assumed];
+    let (code, text) = OWN.compare("event_and_variable", source, &options);
+    assert!(code == Some(0), "{text}");
 }

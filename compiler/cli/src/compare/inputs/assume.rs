@@ -38,12 +38,22 @@ pub struct Mentioned(HashSet<String>);
 
 impl Mentioned {
     pub fn of(text: &str) -> Self {
-        let tokens = text.lines().filter_map(|it| tokens(uncommented(it)).ok()).flatten().collect::<Vec<_>>();
-        Self(tokens.into_iter().map(|it| it.to_lowercase()).collect())
+        let lines = text.lines().filter_map(|it| tokens(uncommented(it)).ok());
+        // In `no run` it is an event, whatever variable has that name.
+        let of_variables = lines.filter(|it| event(it).is_none());
+        Self(of_variables.flatten().map(|it| it.to_lowercase()).collect())
     }
 
     pub fn has(&self, path: &str) -> bool {
         self.0.contains(&path.to_lowercase())
+    }
+}
+
+/// The name of the event that does not happen, by `no run`.
+fn event(tokens: &[String]) -> Option<&str> {
+    match tokens {
+        [no, event] if no.eq_ignore_ascii_case("no") => Some(event),
+        _ => None,
     }
 }
 
@@ -74,7 +84,7 @@ impl Assumptions {
         let mut parser = Parser { tokens: &tokens, inputs };
         let words: Vec<&str> = tokens.iter().map(String::as_str).collect();
         match words.as_slice() {
-            [no, event] if no.eq_ignore_ascii_case("no") => {
+            [_, event] if self::event(&tokens).is_some() => {
                 let found = Event::ALL.into_iter().find(|it| it.name().eq_ignore_ascii_case(event));
                 self.never
                     .push(found.ok_or_else(|| format!("`{event}` is not an event; expected restart, run or reset"))?);

@@ -45,7 +45,14 @@ impl<'a> Again<'a> {
     pub fn new(pair: &'a Pair, rows: &'a [Row]) -> Option<Self> {
         let faults = rows.iter().any(|it| it.faults.iter().any(Option::is_some));
         let last = rows.last().filter(|_| rows.len() <= MAX_ROWS && !faults)?;
-        let repeats = [0, 1].map(|side: usize| pair.end(side, None, rows).is_some_and(|it| it == last.states[side]));
+        let repeats = [0, 1].map(|side: usize| {
+            // What is between variables is not theirs.
+            let is_same = |a: &[u8], b: &[u8]| {
+                let mut scalars = pair.sides[side].scalars.all.iter().map(|it| it.offset..it.offset + it.size);
+                scalars.all(|it| a[it.clone()] == b[it])
+            };
+            pair.end(side, None, rows).is_some_and(|it| is_same(&it, &last.states[side]))
+        });
         Some(Self { pair, rows, last, repeats })
     }
 
@@ -155,6 +162,6 @@ fn keeps_count(side: &Side, block: &Instance, event: Event) -> bool {
     side.keeps(event, block.offset + at)
 }
 
-fn is_of_logix(block: &Instance) -> bool {
+pub fn is_of_logix(block: &Instance) -> bool {
     block.block.info().family == Family::Logix
 }

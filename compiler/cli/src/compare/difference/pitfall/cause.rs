@@ -6,6 +6,7 @@ use super::list::Pitfall;
 use super::parting::{Parting, agrees, by_what_it_shows, case, case_in, kind, other_block, parting};
 use super::relevant::Relevant;
 use super::suspects::{kept_by_one, shown};
+use crate::compare::pair::exchange::is_of_logix;
 use crate::compare::pair::{Matched, Pair, Row};
 use crate::compare::program::scalar::{Instance, Role};
 use crate::compare::program::usage;
@@ -65,12 +66,17 @@ fn is_partial(pair: &Pair, instance: &Instance) -> bool {
 pub fn cause(pair: &Pair, rows: &[Row], differences: &[Matched], habits: &[Habits]) -> Cause {
     let last = rows.len().saturating_sub(1);
     let direct = parted(pair, rows, last, habits, |it| differences.contains(it));
-    if direct.pitfall.is_some() {
+    // A COUNTER of Logix has no pins that show what it was given.
+    let is_of_logix = (0..pair.counters.len()).any(|it| pair.instances(it).iter().any(|it| is_of_logix(it)));
+    if direct.pitfall.is_some() && !is_of_logix {
         return direct;
     }
     let relevant = Relevant::of(pair, differences);
     if let Some(found) = shown(pair, rows, habits, &relevant) {
         return Cause { counter: Some(found.path), pitfall: Some(found.pitfall) };
+    }
+    if direct.pitfall.is_some() {
+        return direct;
     }
     let found = roots(pair, rows, habits, &relevant);
     let restarted = rows.iter().position(|row| row.event.is_some() && relevant.differs(pair, row));

@@ -105,6 +105,33 @@ impl Case {
         self.now.iter().any(|it| it.down)
     }
 
+    /// CU or CD is TRUE now and was before. RES takes that from a COUNTER.
+    fn is_held(&self) -> bool {
+        let held = |of: fn(&Pins) -> bool| self.before.iter().any(of) && self.now.iter().any(of);
+        held(|it| it.up) || held(|it| it.down)
+    }
+
+    /// Logix takes an input for one that was TRUE before: in the first scan, or where the prescan has said so and nothing was
+    /// executed since.
+    fn is_no_edge_to_logix(&self) -> bool {
+        let Some(logix) = self.kinds.iter().position(|it| it.family == Family::Logix) else { return false };
+        let (own, other) = (self.before[logix], self.before[1 - logix]);
+        let is_prescanned = |of: fn(&Pins) -> bool| of(&own) && !of(&other) && of(&self.now[logix]);
+        let is_first = self.first && (self.up() || self.down());
+        let counts_not = own.count == self.now[logix].count;
+        self.parts(Family::Logix)
+            && counts_not
+            && (is_first || is_prescanned(|it| it.up) || is_prescanned(|it| it.down))
+    }
+
+    /// CSCAPE counts what the other does not: an input that stays TRUE, or is in several calls of a scan.
+    fn counts_levels(&self) -> bool {
+        let Some(side) = self.kinds.iter().position(|it| it.family == Family::Cscape) else { return false };
+        let steps = self.now[side].count.abs_diff(self.before[side].count);
+        let is_set = self.now.iter().any(|it| it.reset || it.load);
+        self.parts(Family::Cscape) && (self.is_held() || steps > 1 && !is_set)
+    }
+
     fn is_wider(&self) -> bool {
         self.kinds[0].repr != self.kinds[1].repr
     }
@@ -118,10 +145,12 @@ impl Case {
         })
     }
 
-    /// One side is below 0, the other stays at it, by their rules.
+    /// One side goes below 0, the other stays there, by their rules.
     fn past_zero(&self) -> bool {
-        let [a, b] = self.now;
-        goes_below(self.kinds[0]) != goes_below(self.kinds[1]) && a.count.min(b.count) < 0 && a.count.max(b.count) == 0
+        let [a, b] = self.kinds.map(goes_below);
+        let (below, stays) = if a { (0, 1) } else { (1, 0) };
+        let [lower, upper] = [below, stays].map(|it| self.now[it].count);
+        a != b && lower < 0 && upper <= 0 && lower < upper
     }
 
     /// CD rises on one side alone, where the other has held it since the call before: a guard has made the edge.
@@ -136,13 +165,22 @@ impl Case {
     /// A negative preset is another number on the other side.
     pub(super) fn has_other_preset(&self) -> bool {
         let [a, b] = self.now;
-        a.preset != b.preset && self.is_wider() && (a.preset < 0 || b.preset < 0)
+        let same_bits = (a.preset - b.preset).rem_euclid(1 << 16) == 0;
+        a.preset != b.preset && same_bits && self.is_wider() && (a.preset < 0 || b.preset < 0)
     }
 
     /// Q of CSCAPE asks for a count of 0, that of others for one below it, too.
     pub(super) fn is_empty_on_one(&self) -> bool {
         let [a, b] = self.now;
         self.parts(Family::Cscape) && self.counts_down && a.count == b.count && a.count < 0
+    }
+
+    pub(super) fn counts_alike(&self) -> bool {
+        self.now[0].count == self.now[1].count
+    }
+
+    pub(super) fn counted_alike(&self) -> bool {
+        self.before[0].count == self.before[1].count
     }
 
     /// What the counter is given differs: what is upstream of it has parted.
@@ -192,9 +230,10 @@ fn counts(case: &Case) -> Option<usize> {
         // What stops one side's count, or turns it round, is its width where the other's is wider.
         return Some(if case.is_wider() { 8 } else { 7 });
     }
-    let was_reset = case.before.iter().any(|it| it.reset || it.load);
+    // A load is an assignment in Logix, which no edge forgets.
+    let was_reset = case.before.iter().any(|it| it.reset || it.load && !case.has(Family::Logix));
     let is_reset = case.now.iter().any(|it| it.reset || it.load);
-    if case.first && case.parts(Family::Logix) && (case.up() || case.down()) && !case.given_differs() {
+    if case.is_no_edge_to_logix() && !case.given_differs() {
         return Some(5);
     }
     if case.guards_itself && case.makes_an_edge() {
@@ -207,22 +246,23 @@ fn counts(case: &Case) -> Option<usize> {
         return Some(17);
     }
     let counts_again = case.parts(Family::Logix) || case.parts(Family::Cscape);
-    if counts_again && was_reset && !is_reset && (case.up() || case.down()) && !case.past_zero() {
-        return Some(if case.feeds_itself { 12 } else { 6 });
+    if counts_again && was_reset && !is_reset && case.is_held() && !case.past_zero() {
+        // Its own pattern loses nothing where an edge is what Q rises on.
+        return Some(if case.feeds_itself && case.parts(Family::Cscape) { 12 } else { 6 });
     }
     if counts_without_edge(case) {
         return Some(6);
     }
-    if case.feeds_itself && is_reset {
+    if case.feeds_itself && is_reset && a.preset == b.preset {
         return Some(12);
     }
-    if case.parts(Family::Logix) && case.now.iter().any(|it| it.load) {
+    if case.parts(Family::Logix) && a.preset == b.preset && case.now.iter().any(|it| it.load) {
         return Some(4);
     }
     if case.past_zero() {
         return Some(if case.parts_openplc() { 15 } else { 3 });
     }
-    beyond_preset(case).or_else(|| (case.parts(Family::Cscape) && !case.given_differs()).then_some(1)).or_else(|| {
+    beyond_preset(case).or_else(|| (case.counts_levels() && !case.given_differs()).then_some(1)).or_else(|| {
         let same_bits = (a.count - b.count).rem_euclid(1 << 16) == 0;
         (case.is_wider() && same_bits).then_some(8)
     })

@@ -97,13 +97,25 @@ pub struct Parting {
     pub is_root: bool,
 }
 
-/// The first row in which a counter differs because of a pitfall.
+/// The first row in which a counter differs because of a pitfall: in its count, if the counts differ at the end.
 pub fn parting(pair: &Pair, rows: &[Row], counter: usize, habits: Habits) -> Option<Parting> {
+    let ends = rows.len().checked_sub(1).and_then(|it| case_in(pair, rows, it, counter, habits))?;
+    let by_count = (!ends.counts_alike()).then(|| parting_in(pair, rows, counter, habits, true)).flatten();
+    by_count.or_else(|| parting_in(pair, rows, counter, habits, false))
+}
+
+fn parting_in(pair: &Pair, rows: &[Row], counter: usize, habits: Habits, by_count: bool) -> Option<Parting> {
     let outputs = &pair.outputs[counter];
     (0..rows.len()).find_map(|at| {
-        let agreed = outputs.iter().all(|it| agrees(pair, rows, at, *it));
-        let parts = outputs.iter().any(|it| !pair.same(*it, &rows[at]));
-        let case = (agreed && parts).then(|| case_in(pair, rows, at, counter, habits)).flatten()?;
+        let case = case_in(pair, rows, at, counter, habits)?;
+        let parts = match by_count {
+            true => case.counted_alike() && !case.counts_alike(),
+            false => {
+                let agreed = outputs.iter().all(|it| agrees(pair, rows, at, *it));
+                agreed && outputs.iter().any(|it| !pair.same(*it, &rows[at]))
+            }
+        };
+        let case = parts.then_some(case)?;
         let pitfall = match classify(&case)? {
             Pitfall::START if counts_by_level(pair, rows, counter, habits) => Pitfall::LEVEL,
             pitfall => pitfall,
