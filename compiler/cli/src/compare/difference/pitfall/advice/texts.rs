@@ -275,7 +275,7 @@ pub const TO_LOGIX: &[Advice] = &[
     ),
     advice(
         "edge on Logix",
-        &[5, 6, 12],
+        &[5, 6],
         NOT_CSCAPE,
         &[Logix],
         "Find the edge yourself: `edge := sensor AND NOT before; before := sensor; c.PRE := preset; c.CU := FALSE; CTU(c, edge); \
