@@ -2,6 +2,7 @@
 
 use super::device::Device;
 use core::ops::Range;
+use std::borrow::Cow;
 
 /// A part of the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,10 +86,26 @@ impl Chunk {
         Self { place: place.clone(), says: Says::Words(words.into()) }
     }
 
+    /// What it says, as Structured Text.
+    pub fn said<'c>(&'c self, file: &'c str) -> Cow<'c, str> {
+        match &self.says {
+            Says::Itself => Cow::Borrowed(&file[self.place.clone()]),
+            Says::Symbol(symbol) => Cow::Owned(symbol.to_string()),
+            Says::Words(words) => Cow::Borrowed(words),
+            Says::Wrong(..) => Cow::Borrowed(""),
+        }
+    }
+
     /// The text is not what its system writes.
     pub fn odd(message: impl Into<String>, place: &Range<usize>) -> Self {
         Self { place: place.clone(), says: Says::Wrong(Trouble::Odd, message.into()) }
     }
+}
+
+/// What chunks say together, without space around it.
+pub fn text(file: &str, chunks: &[Chunk]) -> String {
+    let said: String = chunks.iter().map(|it| it.said(file)).collect();
+    said.trim().to_owned()
 }
 
 /// How much of a text there was.

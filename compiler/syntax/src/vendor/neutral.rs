@@ -3,9 +3,8 @@
 
 use super::assembly::{Assembly, Chunk, Says, Trouble};
 use super::l5x::{Ladder, Logic, Names, Scope, Shown, Text, is_rung, shown, starts_as_rung, statements};
-use crate::lex::Kind;
+use super::unit::{after_comment, length_of_text};
 use core::ops::Range;
-use logos::Logos;
 use rustc_hash::FxHashMap;
 
 /// The text with statements for its rungs; `None` where it has none.
@@ -227,14 +226,14 @@ fn continues_heading(word: &str) -> bool {
 
 /// The length of space, a comment, a pragma or a string.
 fn blank(rest: &str) -> Option<usize> {
-    match rest.as_bytes().first()? {
-        b' ' | b'\t' | b'\r' | b'\n' => Some(1),
-        b'/' | b'(' | b'{' | b'\'' | b'"' => {
-            let (kind, place) = Kind::lexer(rest).spanned().next()?;
-            let is_blank =
-                matches!(kind.ok()?, Kind::Comment | Kind::Pragma | Kind::Text | Kind::WideText | Kind::OpenText);
-            is_blank.then_some(place.end)
-        }
+    let until = |end: &str, from: usize| rest[from..].find(end).map_or(rest.len(), |it| from + it + end.len());
+    match rest.as_bytes() {
+        [b' ' | b'\t' | b'\r' | b'\n', ..] => Some(1),
+        [b'/', b'/', ..] => Some(until("\n", 2)),
+        [b'/', b'*', ..] => Some(until("*/", 2)),
+        [b'(', b'*', ..] => Some(rest.len() - after_comment(&rest[2..]).len()),
+        [b'{', ..] => Some(until("}", 1)),
+        [quote @ (b'\'' | b'"'), inner @ ..] => Some(1 + length_of_text(inner, *quote)),
         _ => None,
     }
 }

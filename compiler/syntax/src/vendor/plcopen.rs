@@ -5,12 +5,12 @@ mod declaration;
 mod diagram;
 mod tasks;
 
-use super::assembly::{self, Assembly, Chunk, Trouble};
+use super::assembly::{Assembly, Chunk, Says, Trouble};
 use super::unit::{Body, Unit, What};
 use super::xml::{Broken, Element, Part, Reader};
 use core::ops::Range;
 use declaration::interface;
-use diagram::{Declared, Names, Refusal, Says, Written};
+use diagram::{Context, Declared, Names, Refusal, Written};
 
 /// Whether the root `project` is PLCopen's: by its namespace, or by what is in it, as CODESYS 3.3 wrote it without one.
 pub fn is_project(file: &str, root: &Range<usize>) -> bool {
@@ -55,8 +55,8 @@ fn project<'t>(
             }
             "pou" | "Interface" => {
                 let name = element.attribute(file, "name").unwrap_or_default();
-                let says = Says { declared, pou: name, is_codesys: codesys };
-                let mut diagrams = Diagrams { says, names: Names::default(), variables: Vec::new() };
+                let context = Context { declared, pou: name, is_codesys: codesys };
+                let mut diagrams = Diagrams { context, names: Names::default(), variables: Vec::new() };
                 unit(file, reader, What::Unit, element, &mut diagrams)?.write(file, out);
             }
             "globalVars" => {
@@ -82,7 +82,7 @@ fn project<'t>(
 
 /// What the diagrams of a POU are in, and what they need of it.
 struct Diagrams<'s> {
-    says: Says<'s>,
+    context: Context<'s>,
     names: Names,
     /// Variables of the POU that its actions' diagrams have added.
     variables: Vec<(String, String)>,
@@ -204,15 +204,15 @@ fn body<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>)
 }
 
 fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<Body, Broken> {
-    let read = diagram::read(file, reader, diagrams.says, &mut diagrams.names)?;
+    let read = diagram::read(file, reader, diagrams.context, &mut diagrams.names)?;
     Ok(Body::Text(match read {
         Ok(Written { statements, variables, groups: _ }) => {
             diagrams.variables.extend(variables);
             statements
         }
         Err(Refusal { place, trouble, message }) => {
-            let message = format!("the diagram of `{}`: {message}", diagrams.says.pou);
-            vec![Chunk { place, says: assembly::Says::Wrong(trouble, message) }]
+            let message = format!("the diagram of `{}`: {message}", diagrams.context.pou);
+            vec![Chunk { place, says: Says::Wrong(trouble, message) }]
         }
     }))
 }

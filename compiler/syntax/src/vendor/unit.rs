@@ -102,11 +102,11 @@ impl<'t> Unit<'t> {
 impl Unit<'_> {
     /// Reports a comment that is still open where its part of the file ends, and closes it there.
     fn close_comments(&self, file: &str, chunks: &[Chunk], what: &str, out: &mut Assembly) {
-        let text: String = chunks.iter().map(|it| written(file, it)).collect();
+        let text: String = chunks.iter().map(|it| it.said(file)).collect();
         let Some((mut at, close)) = open_comment(&text) else { return };
         let mut place = self.place.clone();
         for chunk in chunks {
-            let length = written(file, chunk).len();
+            let length = chunk.said(file).len();
             if at < length {
                 let start = chunk.place.start + if chunk.says == Says::Itself { at } else { 0 };
                 place = start..chunk.place.end.min(start + 2);
@@ -162,16 +162,6 @@ pub fn length_of_text(inner: &[u8], quote: u8) -> usize {
     inner.len()
 }
 
-/// What a chunk says, as Structured Text.
-fn written(file: &str, chunk: &Chunk) -> String {
-    match &chunk.says {
-        Says::Itself => file[chunk.place.clone()].to_owned(),
-        Says::Symbol(symbol) => symbol.to_string(),
-        Says::Words(words) => words.clone(),
-        Says::Wrong(..) => String::new(),
-    }
-}
-
 /// The word that ends what a declaration begins; none where it holds its end itself.
 fn end(file: &str, declaration: &[Chunk]) -> &'static str {
     const ENDS: [(&str, &str); 4] = [
@@ -180,7 +170,7 @@ fn end(file: &str, declaration: &[Chunk]) -> &'static str {
         ("PROGRAM", "END_PROGRAM"),
         ("INTERFACE", "END_INTERFACE"),
     ];
-    let text: String = declaration.iter().map(|it| written(file, it)).collect();
+    let text: String = declaration.iter().map(|it| it.said(file)).collect();
     let word = first_word(&text);
     ENDS.iter().find(|it| word.eq_ignore_ascii_case(it.0)).map_or("", |it| it.1)
 }
@@ -206,7 +196,7 @@ fn first_word(text: &str) -> &str {
 }
 
 /// What follows a comment, which may hold others.
-fn after_comment(text: &str) -> &str {
+pub fn after_comment(text: &str) -> &str {
     let bytes = text.as_bytes();
     let (mut open, mut at) = (1_usize, 0);
     while let Some(pair) = bytes.get(at..at + 2) {

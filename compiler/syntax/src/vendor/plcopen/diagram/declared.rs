@@ -1,9 +1,9 @@
 //! What a project declares, as far as the types of wires need it: the variables of its POUs, what its functions return, and the
 //! members of its structures.
 
+use super::super::super::assembly::text;
 use super::super::super::xml::{Broken, Element, Part, Reader};
 use super::super::declaration::ty_within;
-use super::parse::text;
 use rustc_hash::FxHashMap;
 
 /// Variables, pins or members, by their names in capitals, with the types as they are written.

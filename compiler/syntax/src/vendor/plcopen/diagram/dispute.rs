@@ -1,9 +1,9 @@
 //! Where the editors' two orders of execution give different results.
 
 use super::super::super::assembly::Chunk;
+use super::super::super::assembly::text;
 use super::node::{Diagram, Kind};
 use super::order::by_place;
-use super::parse::text;
 use core::ops::Range;
 use rustc_hash::FxHashSet;
 

@@ -1,7 +1,7 @@
 //! What a diagram is made of: its elements, in the order of the file, and what is wired to what.
 
 use super::super::super::assembly::Chunk;
-use super::parse::text;
+use super::super::super::assembly::text;
 use core::ops::Range;
 
 #[derive(Debug, Default)]

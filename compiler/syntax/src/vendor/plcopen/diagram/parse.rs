@@ -1,6 +1,6 @@
 //! The elements of LD and FBD, as the file holds them.
 
-use super::super::super::assembly::{Chunk, Says};
+use super::super::super::assembly::text;
 use super::super::super::xml::{Broken, Element, Part, Reader};
 use super::node::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
 
@@ -201,18 +201,4 @@ fn modifier<'t>(file: &'t str, element: &Element<'t>) -> Modifier {
         Some(_) | None => None,
     };
     Modifier { negated: of("negated") == Some("true"), storage, edge }
-}
-
-/// What chunks of the file say.
-pub fn text(file: &str, chunks: &[Chunk]) -> String {
-    let mut said = String::new();
-    for Chunk { place, says } in chunks {
-        match says {
-            Says::Itself => said.push_str(&file[place.clone()]),
-            Says::Symbol(symbol) => said.push(*symbol),
-            Says::Words(words) => said.push_str(words),
-            Says::Wrong(..) => {}
-        }
-    }
-    said.trim().to_owned()
 }

@@ -2,13 +2,14 @@
 //! was not executed yet. Results of functions are kept in variables, as they are where a wire comes back to what was executed
 //! before: it carries what the last scan left.
 
+use super::super::super::assembly::text;
 use super::super::super::assembly::{Chunk, Trouble};
+use super::context::{Context, Names};
 use super::expression::{Expression, LONGEST};
 use super::functions::is_function;
 use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Output, Storage, Wire};
 use super::order::in_order;
 use super::types::Types;
-use super::{Names, Says};
 use core::ops::Range;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
@@ -49,7 +50,7 @@ pub struct Writer<'w> {
     file: &'w str,
     diagram: &'w Diagram,
     types: &'w Types<'w>,
-    says: Says<'w>,
+    context: Context<'w>,
     names: &'w mut Names,
     written: Written,
     executed: FxHashSet<usize>,
@@ -68,7 +69,7 @@ impl<'w> Writer<'w> {
         file: &'w str,
         diagram: &'w Diagram,
         types: &'w Types<'w>,
-        says: Says<'w>,
+        context: Context<'w>,
         names: &'w mut Names,
     ) -> Self {
         let wires = diagram.nodes.iter().flat_map(|it| it.inputs.iter().flat_map(|it| &it.wires));
@@ -81,7 +82,7 @@ impl<'w> Writer<'w> {
             file,
             diagram,
             types,
-            says,
+            context,
             names,
             written: Written::default(),
             executed: FxHashSet::default(),
@@ -109,7 +110,7 @@ impl<'w> Writer<'w> {
         if let Some((node, what)) = refused {
             return Err(refuse(node, Trouble::NotSupported, format!("{what} in a diagram is not supported")));
         }
-        for at in in_order(self.diagram, self.says.is_codesys) {
+        for at in in_order(self.diagram, self.context.is_codesys) {
             self.carried.clear();
             let start = self.written.statements.len();
             self.element(at)?;
@@ -208,7 +209,7 @@ impl<'w> Writer<'w> {
                     Edge::Rising => "R_TRIG",
                     Edge::Falling => "F_TRIG",
                 };
-                let name = self.names.free(ty, self.says);
+                let name = self.names.free(ty, self.context);
                 self.written.variables.push((name.clone(), ty.to_owned()));
                 self.words(&format!("{name}(CLK := "), node);
                 value.write(&node.place, &mut self.written.statements);
@@ -296,7 +297,7 @@ impl<'w> Writer<'w> {
                 let own = self.modified(node, node.modifier, own);
                 (own, self.fed(at, asked)?)
             }
-            Kind::Coil(_) if self.says.is_codesys => alone(self.fed(at, asked)?),
+            Kind::Coil(_) if self.context.is_codesys => alone(self.fed(at, asked)?),
             // The editors join the wires to a coil by AND where something is wired to its right.
             Kind::Coil(_) => {
                 let mut parts = Vec::new();
@@ -339,7 +340,7 @@ impl<'w> Writer<'w> {
         self.enter(at)?;
         let value = self.value(wires, Asked { in_out: false, ..asked })?;
         self.open.remove(&at);
-        let name = node.expression().map(|it| super::parse::text(self.file, it)).unwrap_or_default();
+        let name = node.expression().map(|it| text(self.file, it)).unwrap_or_default();
         value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{name}` from the left")))
     }
 
@@ -408,7 +409,9 @@ impl<'w> Writer<'w> {
         known.map(ToOwned::to_owned).ok_or_else(|| {
             let pin = &node.outputs[output].formal;
             let message = match &node.kind {
-                Kind::Block { ty, instance: None } if !is_function(&ty.text) && !self.says.has_function(&ty.text) => {
+                Kind::Block { ty, instance: None }
+                    if !is_function(&ty.text) && !self.context.has_function(&ty.text) =>
+                {
                     format!("`{}` is no standard function, and the project does not declare it", ty.text)
                 }
                 _ => format!("nothing that is wired to {} says what type `{pin}` is of", node.shown(self.file)),
@@ -436,7 +439,7 @@ impl<'w> Writer<'w> {
                 continue;
             };
             let value = self.modified(node, input.modifier, value);
-            match self.says.is_codesys && input.formal.eq_ignore_ascii_case("EN") {
+            match self.context.is_codesys && input.formal.eq_ignore_ascii_case("EN") {
                 true => enable = Some(value),
                 false => arguments.push((input.formal.as_str(), value)),
             }
@@ -467,8 +470,8 @@ impl<'w> Writer<'w> {
         }
         let connected = node.inputs.iter().all(|it| !it.wires.is_empty());
         // CODESYS numbers the inputs of its operators.
-        let by_name = !self.says.is_codesys && (node.outputs.len() > 1 || !connected);
-        let is_named = instance.is_some() || by_name || self.says.has_function(&ty.text);
+        let by_name = !self.context.is_codesys && (node.outputs.len() > 1 || !connected);
+        let is_named = instance.is_some() || by_name || self.context.has_function(&ty.text);
         for (formal, value) in arguments {
             let mut part = Vec::new();
             if is_named && !formal.is_empty() {
@@ -481,7 +484,7 @@ impl<'w> Writer<'w> {
         let mut is_kept = true;
         for (output, pin) in node.outputs.iter().enumerate().filter(|_| instance.is_none()) {
             let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
-            if node.is_in_out(&pin.formal) || self.says.is_codesys && is_enable {
+            if node.is_in_out(&pin.formal) || self.context.is_codesys && is_enable {
                 continue;
             }
             if pin.is_result(&ty.text) && !pin.target.is_empty() && !self.wired.contains(&(at, output)) {
@@ -497,7 +500,7 @@ impl<'w> Writer<'w> {
                 false => target = Some(vec![Chunk::words(name, &node.place)]),
             }
         }
-        if instance.is_some() && node.has_enable() && !self.says.is_codesys {
+        if instance.is_some() && node.has_enable() && !self.context.is_codesys {
             // An instance that was never called has TRUE there.
             let name = kept_result(ty, instance.as_ref(), node, "ENO");
             parts.push(vec![Chunk::words(format!("ENO => {name}"), &node.place)]);
