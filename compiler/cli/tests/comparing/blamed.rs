@@ -380,6 +380,14 @@ fn what_makes_a_count_of_logix_another_is_blamed() {
             ("cscape", "logix"),
             "Trap 3 (`d`)",
         ),
+        // It loads itself when it is empty: not before it was called once.
+        (
+            "read_before_the_first_call",
+            "d : CTD;",
+            "d(CD := s, LD := d.Q, PV := 2); q := d.Q;",
+            ("iec", "logix"),
+            "Trap 22 (`d`)",
+        ),
         // The prescan has taken the input for one that was TRUE.
         (
             "called_later",

@@ -66,7 +66,7 @@ END_PROGRAM
     assert_eq!(out.matches("it is never called").count(), 1, "{out}");
     assert!(
         out.contains(
-            "`idle`\n  impossible: trap 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 17, 18, 20, 21: it is never"
+            "`idle`\n  impossible: trap 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 17, 18, 20, 21, 22: it is never"
         ),
         "{out}"
     );

@@ -59,6 +59,8 @@ pub struct Case {
     /// What it counts depends on its own count.
     pub guards_itself: bool,
     pub counts_down: bool,
+    /// It counts down as well, if not only.
+    pub has_down: bool,
 }
 
 impl Case {
@@ -173,6 +175,14 @@ impl Case {
     pub(super) fn is_empty_on_one(&self) -> bool {
         let [a, b] = self.now;
         self.parts(Family::Cscape) && self.counts_down && a.count == b.count && a.count < 0
+    }
+
+    /// A block that counts down says nothing yet, where its count is that of one that is empty.
+    pub(super) fn is_before_first_call(&self) -> bool {
+        let Some(logix) = self.kinds.iter().position(|it| it.family == Family::Logix) else { return false };
+        let block = self.before[1 - logix];
+        let is_silent = if self.counts_down { !block.done } else { !block.empty };
+        self.parts(Family::Logix) && self.has_down && is_silent && block.count == 0 && self.before[logix].count <= 0
     }
 
     pub(super) fn counts_alike(&self) -> bool {

@@ -110,6 +110,7 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         21 => no_cscape
             .or(no_down)
             .or((a.repr.is_signed() != b.repr.is_signed()).then_some("one of the two has no negative count")),
+        22 => no_logix.or(no_down),
         _ if !parts_openplc => Some("OPENPLC is neither, or both, of the two systems"),
         _ => (a.stops == b.stops && goes_below(a) == goes_below(b)).then_some("the other system stops as OPENPLC does"),
     }

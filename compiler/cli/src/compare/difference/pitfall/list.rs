@@ -7,7 +7,7 @@ use staunch_frontend::Dialect;
 pub struct Pitfall(usize);
 
 /// In brackets, what is said where one of the systems before the stroke is compared.
-const PITFALLS: [&str; 21] = [
+const PITFALLS: [&str; 22] = [
     "CU held TRUE counts once everywhere except CSCAPE, where it counts every call.",
     "Past PV: [cscape|the count of CSCAPE stays at PV; ][codesys|the count of a CTU of CODESYS and TwinCAT stays at PV with `ctu-stop-at-pv = true`; ]others continue to count. Where it stays, `CV > PV` is never TRUE, and `CV = PV` stays TRUE.",
     "CTD at 0: [iec|IEC goes negative; ][siemens|S7 goes negative; ][logix|Logix goes negative; ][cscape|CSCAPE stays at 0; ][codesys|CODESYS stays at 0; ]",
@@ -15,7 +15,7 @@ const PITFALLS: [&str; 21] = [
     "Input already TRUE at start-up: Logix does not count it, the others do.",
     "Input still TRUE after a reset: [logix|Logix counts one when the reset goes; ][cscape|CSCAPE continues to count; ][iec|IEC does not count; ][siemens|S7 does not count; ][codesys|CODESYS does not count; ][openplc openplc4|OPENPLC does not count; ]",
     "Limits: [iec|IEC saturates; ][siemens|S7 saturates; ][codesys|CODESYS saturates; ][logix|Logix wraps with OV/UN; ]",
-    "Widths: INT, WORD, DINT. [codesys|`CV < 0` is never TRUE in CODESYS; -1 written to a WORD preset is 65535. ]",
+    "Widths: an INT, a WORD and a DINT do not hold the same counts. [codesys|`CV < 0` is never TRUE in CODESYS; -1 written to a WORD preset is 65535. ]",
     "Pin names R/LD against RESET/LOAD: positional calls survive a move, named ones do not.",
     "PV lowered under CV: Q drops on CSCAPE, holds elsewhere.",
     "Restart: [logix|Logix keeps all; ][codesys|CODESYS keeps all over STOP -> RUN; ][cscape|CSCAPE needs R_CTU/R_CTD and a RETAIN RCV; ]else what is not RETAIN starts anew.",
@@ -29,6 +29,7 @@ const PITFALLS: [&str; 21] = [
     "TON, TOF and TP on OPENPLC, before and from v4.1, see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
     "LD held TRUE: S7 with `s7-ld = \"edge\"` loads PV in its first call; the others in each, so that CV follows PV and is PV when R goes.",
     "Q of a CTD whose count is negative, as after a load of a negative PV: CSCAPE compares `CV = 0`, the others `CV <= 0`.",
+    "Q of a CTD, and QD, is FALSE before the first call; what stands for it in Logix, `ACC <= 0`, is TRUE at once.",
 ];
 
 impl Pitfall {
@@ -44,6 +45,8 @@ impl Pitfall {
     pub const START: Self = Self::numbered(5);
     /// Of a negative count.
     pub const BELOW: Self = Self::numbered(21);
+    /// Of Q before the first call.
+    pub const BEFORE: Self = Self::numbered(22);
     /// What is not about how a counter counts.
     pub const OF_MORE: [Self; 4] = [Self::numbered(9), Self::RESTART, Self::FIRST_FALL, Self::LATER_CALL];
 

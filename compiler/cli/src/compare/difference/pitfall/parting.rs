@@ -40,6 +40,7 @@ pub fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event
         feeds_itself: habits.feeds_itself,
         guards_itself: habits.guards_itself,
         counts_down: instances.into_iter().any(only_down),
+        has_down: instances.into_iter().any(|it| it.has(PinRole::Down)),
     })
 }
 
@@ -148,15 +149,22 @@ pub fn by_what_it_shows(
 ) -> Option<(String, Pitfall)> {
     let last = rows.len().checked_sub(1)?;
     let decides = |counter: &usize| relevant.has(pair.instances(*counter)[0].field, &HashSet::new());
-    (0..habits.len()).filter(decides).find_map(|counter| {
+    let at_the_end = |counter: usize| {
         let case = case_in(pair, rows, last, counter, habits[counter])?;
-        let pitfall = match () {
-            () if case.is_empty_on_one() => Pitfall::BELOW,
-            () if case.has_other_preset() => Pitfall::WIDTHS,
-            () => return None,
-        };
-        Some((pair.instances(counter)[0].path.clone(), pitfall))
-    })
+        match () {
+            () if case.is_empty_on_one() => Some(Pitfall::BELOW),
+            () if case.has_other_preset() => Some(Pitfall::WIDTHS),
+            () => None,
+        }
+    };
+    let before = |counter: usize| {
+        let mut cases = (0..rows.len()).filter_map(|it| case_in(pair, rows, it, counter, habits[counter]));
+        cases.any(|it| it.is_before_first_call()).then_some(Pitfall::BEFORE)
+    };
+    let all = || (0..habits.len()).filter(decides);
+    let found = |of: &dyn Fn(usize) -> Option<Pitfall>| all().find_map(|it| Some((it, of(it)?)));
+    let (counter, pitfall) = found(&at_the_end).or_else(|| found(&before))?;
+    Some((pair.instances(counter)[0].path.clone(), pitfall))
 }
 
 /// A counter in a row.

@@ -15,7 +15,8 @@ pub fn text(counting: Counting) -> Option<String> {
         (Family::Iec | Family::Codesys | Family::Openplc | Family::Openplc4 | Family::S7, form) => edges(rules, form),
     };
     let kept = match rules.family {
-        Family::Logix => "RETAIN but for `before` (of CTUD `bu` and `bd`), which is initially TRUE,",
+        Family::Logix if counting.form == Form::UpDown => "RETAIN but for `bu` and `bd`, which are initially TRUE,",
+        Family::Logix => "RETAIN but for `before`, which is initially TRUE,",
         Family::Iec | Family::Codesys | Family::Cscape | Family::Openplc | Family::Openplc4 | Family::S7 => {
             "RETAIN where `c` is,"
         }

@@ -13,9 +13,20 @@ const LOGIX: Kind = Kind { family: Family::Logix, repr: Repr::I32, stops: false,
 
 fn case(to: Kind, before: Pins, now: [Pins; 2]) -> Case {
     let kinds = [IEC, to];
-    let (first, restarted, counts_down) = (false, false, false);
+    let (first, restarted, counts_down, has_down) = (false, false, false, false);
     let (feeds_itself, guards_itself, kept_alike) = (false, false, false);
-    Case { kinds, before: [before; 2], now, first, restarted, kept_alike, feeds_itself, guards_itself, counts_down }
+    Case {
+        kinds,
+        before: [before; 2],
+        now,
+        first,
+        restarted,
+        kept_alike,
+        feeds_itself,
+        guards_itself,
+        counts_down,
+        has_down,
+    }
 }
 
 fn number(case: Case) -> Option<usize> {
