@@ -171,9 +171,9 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     lints::hides::report(&mut declarations);
     lints::checks::report(&mut declarations);
     lints::unused::report(&mut declarations);
+    let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
+    stubs.report_called(&mut declarations, &routines, keep == Bodies::Kept);
     if keep == Bodies::Kept {
-        let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
-        stubs.report_called(&mut declarations, &routines);
         declarations.report_not_there(&routines);
     }
     let left_out = checked.left_out;

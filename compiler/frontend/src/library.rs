@@ -131,9 +131,10 @@ fn is_stub(pou: &Pou<'_>) -> bool {
 }
 
 impl Stubs {
-    /// Reports what is called of the library and has no body, each once; `routines` are those of the POUs' slots. In a
-    /// unit test a mock may replace it; otherwise it faults, as it does in a test by a table.
-    pub fn report_called(&self, declarations: &mut Declarations<'_>, routines: &[Option<&Routine>]) {
+    /// Reports what is called and has code in C, and, of a program that `is_built`, what is called of the library and has no body,
+    /// each once; `routines` are those of the POUs' slots. In a unit test a mock may replace it; otherwise it faults, as it does
+    /// in a test by a table.
+    pub fn report_called(&self, declarations: &mut Declarations<'_>, routines: &[Option<&Routine>], is_built: bool) {
         if self.names.is_empty() || declarations.log.options.tests || declarations.log.options.is_tested {
             return;
         }
@@ -154,7 +155,8 @@ impl Stubs {
         for (slot, at) in missing {
             match self.c_code.get(&declarations.pous[slot].ast.name.span) {
                 Some(code) => declarations.report_c_code(slot, at, *code),
-                None => declarations.report_without_body(slot, at),
+                None if is_built => declarations.report_without_body(slot, at),
+                None => {}
             }
         }
     }
