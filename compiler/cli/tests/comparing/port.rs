@@ -236,3 +236,13 @@ fn what_cannot_be_rewritten_is_refused_with_a_way_that_is_accepted() {
     let fixed = run(&format!("{} --from iec --to logix", named.display()));
     assert_eq!(fixed.status.code(), Some(2), "{}", text(&fixed.stderr));
 }
+
+/// A count is a WORD in CODESYS, and a DINT in Logix, as a preset is.
+#[test]
+fn a_count_may_be_a_preset() {
+    let source = "PROGRAM p\nVAR_INPUT a, b : BOOL; END_VAR\nVAR c, d : CTU; END_VAR\nVAR_OUTPUT full : BOOL; END_VAR\n\
+                  c(CU := a, RESET := b, PV := 10); d(CU := b, RESET := FALSE, PV := c.CV); full := d.Q;\nEND_PROGRAM\n";
+    let options = ["--from", "codesys", "--to", "logix", "--vars", "full"];
+    let (code, text) = OWN.compare("count_as_preset", source, &options);
+    assert!(code == Some(1) && text.contains("d.PRE := c.ACC;"), "{text}");
+}

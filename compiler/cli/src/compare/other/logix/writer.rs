@@ -181,6 +181,23 @@ impl<'t, 'f> Writer<'t, 'f> {
         }
     }
 
+    /// An argument of a counter's call. A preset is a DINT there: the count of another needs no conversion.
+    fn argument_of(&mut self, counter: Counter, at: usize, argument: &Argument<'_>) {
+        let (input, value) = match &argument.kind {
+            ArgumentKind::Positional(value) => (counter.input_at(at), Some(value)),
+            ArgumentKind::Input(name, value) => (counter.input_named(name.text), Some(value)),
+            ArgumentKind::Output { .. } => (None, None),
+        };
+        let is_count = |it: &&Expr<'_>| match &it.kind {
+            ExprKind::Member(base, _) => self.counter(base).is_some(),
+            _ => false,
+        };
+        match value.filter(|_| input == Some(Input::Pin(PinRole::Preset))).filter(is_count) {
+            Some(value) => self.expr(value, false),
+            None => self.argument(argument),
+        }
+    }
+
     fn member(&mut self, expr: &Expr<'_>, base: &Expr<'_>, name: Name<'_>, counter: Counter, narrow: bool) {
         self.expr(base, true);
         let (start, end) = bounds(base.span);
@@ -210,7 +227,9 @@ impl<'t, 'f> Writer<'t, 'f> {
             // a COUNTER is not called.
             return arguments.iter().for_each(|it| self.argument(it));
         }
-        arguments.iter().for_each(|it| self.argument(it));
+        for (at, argument) in arguments.iter().enumerate() {
+            self.argument_of(counter, at, argument);
+        }
         let given = self.inputs(counter, arguments);
         let input = |input: Input| given.iter().find(|it| it.0 == input).map(|it| it.1.as_str());
         let get = |role: PinRole| input(Input::Pin(role));
