@@ -11,6 +11,7 @@ use super::xml::{Broken, Element, Part, Reader};
 use core::ops::Range;
 use declaration::interface;
 use diagram::{Context, Declared, Names, Refusal, Written};
+use rustc_hash::FxHashSet;
 
 /// Whether the root `project` is PLCopen's: by its namespace, or by what is in it, as CODESYS 3.3 wrote it without one.
 pub fn is_project(file: &str, root: &Range<usize>) -> bool {
@@ -55,8 +56,9 @@ fn project<'t>(
             }
             "pou" | "Interface" => {
                 let name = element.attribute(file, "name").unwrap_or_default();
-                let context = Context { declared, pou: name, is_codesys: codesys };
-                let mut diagrams = Diagrams { context, names: Names::default(), variables: Vec::new() };
+                let context = Context { declared, pou: name, action: "", is_codesys: codesys };
+                let mut diagrams =
+                    Diagrams { context, action: String::new(), names: Names::default(), variables: Vec::new() };
                 unit(file, reader, What::Unit, element, &mut diagrams)?.write(file, out);
             }
             "globalVars" => {
@@ -83,13 +85,61 @@ fn project<'t>(
 /// What the diagrams of a POU are in, and what they need of it.
 struct Diagrams<'s> {
     context: Context<'s>,
+    /// The action that is read.
+    action: String,
     names: Names,
     /// Variables of the POU that its actions' diagrams have added.
     variables: Vec<(String, String)>,
 }
 
+impl Diagrams<'_> {
+    /// What a unit's diagrams need is its own, but for an action's. What the outer one needs is kept meanwhile.
+    fn enter(&mut self, what: What, name: &str) -> Vec<(String, String)> {
+        if what == What::Action {
+            name.clone_into(&mut self.action);
+            return Vec::new();
+        }
+        std::mem::take(&mut self.variables)
+    }
+
+    fn leave(&mut self, what: What, outer: Vec<(String, String)>) {
+        self.action.clear();
+        if what != What::Action {
+            self.variables = outer;
+        }
+    }
+}
+
+/// The sections of what diagrams need. An instance keeps what it has seen, in a method too.
+fn sections(what: What, variables: &[(String, String)]) -> String {
+    let is_instance = |it: &(String, String)| it.1.ends_with("_TRIG") && what == What::Method;
+    // An instance that is drawn twice has one ENO.
+    let mut seen = FxHashSet::default();
+    let variables: Vec<_> = variables.iter().filter(|it| seen.insert(&it.0)).collect();
+    let section = |keyword: &str, of: &dyn Fn(&(String, String)) -> bool| {
+        let lines: String =
+            variables.iter().filter(|it| of(it)).map(|(name, ty)| format!("{name} : {ty};\n")).collect();
+        if lines.is_empty() { lines } else { format!("\n{keyword}\n{lines}END_VAR\n") }
+    };
+    section("VAR", &|it| !is_instance(it)) + &section("VAR_INST", &is_instance)
+}
+
 /// A POU, a method or an accessor that was opened, to its end.
 fn unit<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    what: What,
+    element: Element<'t>,
+    diagrams: &mut Diagrams<'_>,
+) -> Result<Unit<'t>, Broken> {
+    let name = element.attribute(file, "name").unwrap_or_default();
+    let outer = diagrams.enter(what, name);
+    let unit = whole_unit(file, reader, what, element, diagrams);
+    diagrams.leave(what, outer);
+    unit
+}
+
+fn whole_unit<'t>(
     file: &'t str,
     reader: &mut Reader<'t>,
     what: What,
@@ -139,8 +189,7 @@ fn unit<'t>(
     unit.end = reader.last();
     // An action has the variables of its POU.
     if what != What::Action && !diagrams.variables.is_empty() {
-        let lines = diagrams.variables.drain(..).map(|(name, ty)| format!("{name} : {ty};\n"));
-        let words = format!("\nVAR\n{}END_VAR\n", lines.collect::<String>());
+        let words = sections(what, &std::mem::take(&mut diagrams.variables));
         unit.declaration.push(Chunk::words(words, &unit.end));
     }
     Ok(unit)
@@ -204,7 +253,8 @@ fn body<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>)
 }
 
 fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<Body, Broken> {
-    let read = diagram::read(file, reader, diagrams.context, &mut diagrams.names)?;
+    let context = Context { action: &diagrams.action, ..diagrams.context };
+    let read = diagram::read(file, reader, context, &mut diagrams.names)?;
     Ok(Body::Text(match read {
         Ok(Written { statements, variables, groups: _ }) => {
             diagrams.variables.extend(variables);

@@ -2,7 +2,7 @@
 
 use super::classify::{Habits, goes_below, is_openplc};
 use super::list::Pitfall;
-use super::parting::kind;
+use super::parting::{block_counts_down, kind};
 use crate::compare::pair::Pair;
 use crate::compare::program::scalar::Instance;
 use crate::compare::program::usage::{self, Usage};
@@ -110,7 +110,8 @@ pub fn impossible(pitfall: Pitfall, instances: [&Instance; 2], usage: Use) -> Op
         21 => no_cscape
             .or(no_down)
             .or((a.repr.is_signed() != b.repr.is_signed()).then_some("one of the two has no negative count")),
-        22 => no_logix.or(no_down),
+        22 if !instances.into_iter().any(block_counts_down) => no_logix.or(Some("no block of it counts down")),
+        22 => no_logix,
         _ if !parts_openplc => Some("OPENPLC is neither, or both, of the two systems"),
         _ => (a.stops == b.stops && goes_below(a) == goes_below(b)).then_some("the other system stops as OPENPLC does"),
     }

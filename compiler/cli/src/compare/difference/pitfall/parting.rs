@@ -40,8 +40,13 @@ pub fn case(pair: &Pair, at: usize, states: [[&[u8]; 2]; 2], event: Option<Event
         feeds_itself: habits.feeds_itself,
         guards_itself: habits.guards_itself,
         counts_down: instances.into_iter().any(only_down),
-        has_down: instances.into_iter().any(|it| it.has(PinRole::Down)),
+        has_down: instances.into_iter().any(block_counts_down),
     })
+}
+
+/// Whether it is a block that counts down: a COUNTER of Logix has members for both ways.
+pub fn block_counts_down(it: &Instance) -> bool {
+    it.block.info().family != Family::Logix && it.has(PinRole::Down)
 }
 
 /// Whether both systems keep, or lose, a count in an event; in one that an earlier scan had, in all of them.

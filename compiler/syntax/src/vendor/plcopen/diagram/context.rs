@@ -8,6 +8,8 @@ use rustc_hash::FxHashSet;
 pub struct Context<'s> {
     pub declared: &'s Declared,
     pub pou: &'s str,
+    /// The action, where the diagram is one's.
+    pub action: &'s str,
     pub is_codesys: bool,
 }
 

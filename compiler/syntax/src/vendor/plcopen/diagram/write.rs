@@ -162,7 +162,7 @@ impl<'w> Writer<'w> {
         let at = self.types.node(&wire.from)?;
         let node = &self.diagram.nodes[at];
         match &node.kind {
-            Kind::Block { ty, instance } if node.has_enable() => Some(kept_result(ty, instance.as_ref(), node, "ENO")),
+            Kind::Block { ty, instance } if node.has_enable() => Some(self.kept_in(ty, instance.as_ref(), node, "ENO")),
             _ => None,
         }
     }
@@ -372,7 +372,7 @@ impl<'w> Writer<'w> {
         let asked_of_input = Asked { ordered: node.order > 0, in_out: true };
         let value = match instance {
             Some(_) if pin.formal.eq_ignore_ascii_case("ENO") => match node.has_enable() {
-                true => Expression::name(&kept_result(ty, instance.as_ref(), node, "ENO"), &node.place),
+                true => Expression::name(&self.kept_in(ty, instance.as_ref(), node, "ENO"), &node.place),
                 false => Expression::always(),
             },
             Some(instance) => Expression::name(&format!("{}.{}", instance.text, pin.formal), &node.place),
@@ -381,7 +381,7 @@ impl<'w> Writer<'w> {
                 let value = self.value(wires, asked_of_input)?;
                 value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", pin.formal)))?
             }
-            None => Expression::name(&kept_result(ty, None, node, &pin.formal), &node.place),
+            None => Expression::name(&self.kept_in(ty, None, node, &pin.formal), &node.place),
         };
         let value = self.modified(node, pin.modifier, value);
         match instance {
@@ -420,6 +420,20 @@ impl<'w> Writer<'w> {
         })
     }
 
+    /// The variable that keeps an output of a function, or ENO of an instance. The numbers of an action's elements are its own.
+    fn kept_in(&self, ty: &Name, instance: Option<&Name>, node: &Node, formal: &str) -> String {
+        let (ty, id) = (&ty.text, &node.id);
+        let action = match self.context.action {
+            "" => String::new(),
+            action => format!("{action}_"),
+        };
+        match (instance, formal) {
+            (Some(instance), _) => format!("_TMP_{}_{formal}", instance.text),
+            (None, "") => format!("{action}{ty}{id}"),
+            (None, _) => format!("_TMP_{action}{ty}{id}_{formal}"),
+        }
+    }
+
     /// Writes the call of a block, once.
     fn execute(&mut self, at: usize, asked: Asked) -> Of<()> {
         let node = &self.diagram.nodes[at];
@@ -445,7 +459,7 @@ impl<'w> Writer<'w> {
             }
         }
         if let Some(enable) = enable {
-            let name = kept_result(ty, instance.as_ref(), node, "ENO");
+            let name = self.kept_in(ty, instance.as_ref(), node, "ENO");
             self.written.variables.push((name.clone(), "BOOL".to_owned()));
             self.assign(node, &[Chunk::words(name.as_str(), &node.place)], &enable);
             self.words(&format!("IF {name} THEN\n    "), node);
@@ -492,7 +506,7 @@ impl<'w> Writer<'w> {
                 is_kept = false;
                 continue;
             }
-            let name = kept_result(ty, None, node, &pin.formal);
+            let name = self.kept_in(ty, None, node, &pin.formal);
             let of_type = self.type_of(at, output)?;
             self.written.variables.push((name.clone(), of_type));
             match node.outputs.len() > 1 && !pin.is_result(&ty.text) {
@@ -502,7 +516,7 @@ impl<'w> Writer<'w> {
         }
         if instance.is_some() && node.has_enable() && !self.context.is_codesys {
             // An instance that was never called has TRUE there.
-            let name = kept_result(ty, instance.as_ref(), node, "ENO");
+            let name = self.kept_in(ty, instance.as_ref(), node, "ENO");
             parts.push(vec![Chunk::words(format!("ENO => {name}"), &node.place)]);
             self.written.variables.push((name, "BOOL := TRUE".to_owned()));
         }
@@ -524,22 +538,13 @@ impl<'w> Writer<'w> {
         for pin in node.outputs.iter().filter(assigned) {
             let value = match instance {
                 Some(instance) => format!("{}.{}", instance.text, pin.formal),
-                None => kept_result(ty, None, node, &pin.formal),
+                None => self.kept_in(ty, None, node, &pin.formal),
             };
             let value = Expression::name(&value, &node.place);
             let value = self.modified(node, pin.modifier, value);
             self.assign(node, &pin.target, &value);
         }
         Ok(())
-    }
-}
-
-/// The variable that keeps an output of a function, or ENO of an instance.
-fn kept_result(ty: &Name, instance: Option<&Name>, node: &Node, formal: &str) -> String {
-    match (instance, formal) {
-        (Some(instance), _) => format!("_TMP_{}_{formal}", instance.text),
-        (None, "") => format!("{}{}", ty.text, node.id),
-        (None, _) => format!("_TMP_{}{}_{formal}", ty.text, node.id),
     }
 }
 
