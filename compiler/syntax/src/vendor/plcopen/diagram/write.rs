@@ -46,6 +46,9 @@ struct Asked {
     in_out: bool,
 }
 
+/// The outputs that wires come from, in order, and whether these were executed for that.
+type Sources = (Vec<(usize, usize)>, bool);
+
 pub struct Writer<'w> {
     file: &'w str,
     diagram: &'w Diagram,
@@ -55,8 +58,8 @@ pub struct Writer<'w> {
     written: Written,
     executed: FxHashSet<usize>,
     connectors: FxHashMap<String, Rc<Expression>>,
-    /// What wires carry, by the pins that they come from, and by whether these were executed for that: up to the next call.
-    carried: FxHashMap<(Vec<(usize, usize)>, bool), Rc<Expression>>,
+    /// What wires carry, up to the next call.
+    carried: FxHashMap<Sources, Rc<Expression>>,
     /// The outputs that wires come from.
     wired: FxHashSet<(usize, usize)>,
     /// What is being found.
