@@ -1,9 +1,8 @@
 //! Which files are sources, and which list others: the projects and solutions of TwinCAT, and the projects of OpenPLC
-//! Editor.
+//! Editor and Beremiz.
 
+mod beremiz;
 mod openplc;
-
-pub use openplc::project_in;
 
 use staunch_frontend::{Reference, Source};
 use std::path::{Path, PathBuf};
@@ -26,6 +25,11 @@ fn has_extension(path: &Path, all: &[&str]) -> bool {
     extension.is_some_and(|it| all.contains(&it.as_str()))
 }
 
+/// The project that a folder is.
+pub fn project_in(folder: &Path) -> Option<PathBuf> {
+    openplc::project_in(folder).or_else(|| beremiz::project_in(folder))
+}
+
 /// What a library or a program is called: as its file, project or folder is. Of OpenPLC Editor each project has a folder,
 /// whose name it has.
 pub fn name(path: &Path) -> String {
@@ -43,6 +47,9 @@ pub fn name(path: &Path) -> String {
 pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
     if openplc::is_project(path) {
         return Ok((openplc::files(path)?, vec![path.to_owned()]));
+    }
+    if beremiz::is_project(path) {
+        return Ok((vec![path.to_owned()], Vec::new()));
     }
     let mut lists = Vec::new();
     let projects = plc_projects(path, 0, &mut lists)?;

@@ -274,3 +274,20 @@ fn a_project_moves_to_another_system() {
     has(&folder.read("codesys.st"), &["full AT %IX0.0 : BOOL; (* the float *)", "level AT %MW0 : UINT := 20;"]);
     folder.staunch("check codesys.st --dialect codesys").err(0);
 }
+
+/// The folder of a project of Beremiz, or of the editors before v4, also has what they generate from it.
+#[test]
+fn a_project_in_one_file_of_xml_is_read_once() {
+    let cases = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/cases/vendor");
+    let xml = std::fs::read_to_string(cases.join("plcopen_ladder.st")).unwrap();
+    let folder = Folder::with("beremiz", &[("plc.xml", xml.as_str()), ("beremiz.xml", "<BeremizRoot/>")]);
+    std::fs::create_dir_all(folder.0.join("build")).unwrap();
+    folder.write("build/plc.st", "PROGRAM Main\nVAR motor : BOOL; END_VAR\nmotor := TRUE;\nEND_PROGRAM\n");
+    has(&folder.staunch("check . --dialect openplc").err(0), &["Checked plc.xml\n"]);
+    folder.write("in.csv", "scan,start\n1,TRUE\n2,FALSE\n");
+    let run = folder.staunch("run . --dialect openplc --stimulus in.csv --scans 2 --vars start,motor --trace -");
+    assert_eq!(run.out(0), "scan,time_ms,start,motor\n1,0,TRUE,TRUE\n2,10,FALSE,TRUE\n");
+    // Without the mark of a project it is a folder like others.
+    std::fs::remove_file(folder.0.join("beremiz.xml")).unwrap();
+    has(&folder.staunch("check . --dialect openplc").err(0), &["Checked build/plc.st\n"]);
+}

@@ -41,7 +41,7 @@ impl Pitfall {
     pub const WIDTHS: Self = Self::numbered(8);
     /// CU is a level on CSCAPE.
     pub const LEVEL: Self = Self::numbered(1);
-    /// What is TRUE at start-up is no edge to Logix.
+    /// Logix does not count an input that is TRUE at start-up.
     pub const START: Self = Self::numbered(5);
     /// Of a negative count.
     pub const BELOW: Self = Self::numbered(21);

@@ -130,8 +130,8 @@ fn parting_in(pair: &Pair, rows: &[Row], counter: usize, habits: Habits, by_coun
     })
 }
 
-/// Whether CSCAPE counts what has no edge, so that at the end the counts are further apart than by one that Logix leaves out at the
-/// start.
+/// Whether CSCAPE counts an input without an edge, so that at the end the counts differ by more than the one that Logix does not
+/// count at the start.
 fn counts_by_level(pair: &Pair, rows: &[Row], counter: usize, habits: Habits) -> bool {
     let case = |at: usize| case_in(pair, rows, at, counter, habits);
     let Some(last) = rows.len().checked_sub(1).and_then(case) else { return false };

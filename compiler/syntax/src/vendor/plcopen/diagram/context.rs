@@ -14,7 +14,7 @@ pub struct Context<'s> {
 }
 
 impl Context<'_> {
-    /// Whether the project has a function of this name.
+    /// Whether the project declares a function with this name.
     pub fn has_function(&self, name: &str) -> bool {
         self.declared.result(name).is_some()
     }

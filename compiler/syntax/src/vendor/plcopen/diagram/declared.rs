@@ -69,7 +69,7 @@ const fn counter(ty: &'static str) -> [(&'static str, &'static str); 9] {
 }
 
 impl Declared {
-    /// Looks through a whole file. What is not well-formed is found by who reads it.
+    /// Reads the declarations of a whole file. XML that is not well-formed is reported when the file is read.
     pub fn of(file: &str) -> Self {
         let mut found = Self::default();
         if let Some(mut reader) = Reader::new(file) {
