@@ -1,7 +1,7 @@
 //! Addresses as OpenPLC Editor writes them: after the type, `x : BOOL AT %QX0.0`, and by the alias of a pin. What the
 //! project knows of an address is added to what documents its variable.
 
-use crate::ast::{File, Item, Name, Pou, VarBlock, VarDecl};
+use crate::ast::{File, Item, Name, Pou, VarBlock, VarDecl, VarKind};
 use crate::dialect::Dialect;
 use crate::log::Log;
 use crate::parse::address_without_sign;
@@ -14,7 +14,8 @@ pub(crate) fn resolve<'s>(files: &mut [File<'s>], log: &mut Log<'s>) {
             late(address, problem, log);
         }
         file.items.iter_mut().for_each(|it| item(it, &mut |it| resolve_one(it, log)));
-        file.items.iter_mut().for_each(|it| located_constants(it, log));
+        let items = std::mem::take(&mut file.items);
+        file.items = items.into_iter().flat_map(|it| located_constants(it, log)).collect();
     }
 }
 
@@ -82,34 +83,34 @@ fn report_alias(alias: Name<'_>, log: &mut Log<'_>) {
 /// The declarations of variables in an item.
 /// What has an address is no CONSTANT in OpenPLC, whatever its section says: it begins with its value, and the address has what the
 /// machine writes there.
-fn located_constants<'s>(item: &mut Item<'s>, log: &Log<'s>) {
-    let split = |blocks: &mut Vec<VarBlock<'s>>| {
-        let is_mixed = |it: &VarBlock<'s>| {
-            let can_be = log.dialect(it.span).has_located_constants();
-            can_be && it.constant.is_some() && it.vars.iter().any(|it| it.address.is_some())
+fn located_constants<'s>(mut item: Item<'s>, log: &Log<'s>) -> Vec<Item<'s>> {
+    let split = |block: VarBlock<'s>| -> Vec<VarBlock<'s>> {
+        let can_be = log.dialect(block.span).has_located_constants();
+        if !can_be || block.constant.is_none() || block.vars.iter().all(|it| it.address.is_none()) {
+            return vec![block];
+        }
+        let alone = |decl: &VarDecl<'s>| {
+            let constant = block.constant.filter(|_| decl.address.is_none());
+            VarBlock { constant, vars: vec![decl.clone()], ..block.clone() }
         };
-        if !blocks.iter().any(is_mixed) {
-            return;
-        }
-        for block in std::mem::take(blocks) {
-            if !is_mixed(&block) {
-                blocks.push(block);
-                continue;
-            }
-            for decl in &block.vars {
-                let constant = block.constant.filter(|_| decl.address.is_none());
-                blocks.push(VarBlock { constant, vars: vec![decl.clone()], ..block.clone() });
-            }
-        }
+        block.vars.iter().map(alone).collect()
     };
-    match item {
-        Item::Pou(it) => split(&mut it.blocks),
+    let split_all = |blocks: &mut Vec<VarBlock<'s>>| {
+        *blocks = std::mem::take(blocks).into_iter().flat_map(split).collect();
+    };
+    match &mut item {
+        Item::Pou(it) => split_all(&mut it.blocks),
         Item::Configuration(it) => {
-            split(&mut it.globals);
-            it.resources.iter_mut().for_each(|it| split(&mut it.globals));
+            split_all(&mut it.globals);
+            it.resources.iter_mut().for_each(|it| split_all(&mut it.globals));
         }
-        Item::Test(_) | Item::Globals(_) | Item::Types(_) => {}
+        Item::Globals(block) => {
+            let block = std::mem::replace(block, VarBlock::new(VarKind::Global, block.span));
+            return split(block).into_iter().map(Item::Globals).collect();
+        }
+        Item::Test(_) | Item::Types(_) => {}
     }
+    vec![item]
 }
 
 fn item<'s>(item: &mut Item<'s>, change: &mut impl FnMut(&mut VarDecl<'s>)) {

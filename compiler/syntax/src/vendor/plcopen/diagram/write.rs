@@ -374,16 +374,18 @@ impl<'w> Writer<'w> {
         let Some(pin) = node.outputs.get(output) else { return Ok(Expression::always()) };
         let asked_of_input = Asked { ordered: node.order > 0, in_out: true };
         let value = match instance {
+            // What it takes is what it gives back.
+            _ if node.is_in_out(&pin.formal) => {
+                let wires = node.input(&pin.formal).map_or(&[][..], |it| it.wires.as_slice());
+                let value = self.value(wires, asked_of_input)?;
+                return value
+                    .ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", pin.formal)));
+            }
             Some(_) if pin.formal.eq_ignore_ascii_case("ENO") => match node.has_enable() {
                 true => Expression::name(&self.kept_in(ty, instance.as_ref(), node, "ENO"), &node.place),
                 false => Expression::always(),
             },
             Some(instance) => Expression::name(&format!("{}.{}", instance.text, pin.formal), &node.place),
-            None if node.is_in_out(&pin.formal) => {
-                let wires = node.input(&pin.formal).map_or(&[][..], |it| it.wires.as_slice());
-                let value = self.value(wires, asked_of_input)?;
-                value.ok_or_else(|| refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", pin.formal)))?
-            }
             None => Expression::name(&self.kept_in(ty, None, node, &pin.formal), &node.place),
         };
         let value = self.modified(node, pin.modifier, value);
