@@ -364,7 +364,7 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::OtherOrder => (
             Code::W0528,
             "OpenPLC Editor before it was in Python 3, and Beremiz before April 2023, go from top to bottom: check which order is \
-             meant, and give the elements an execution order",
+             meant, and draw the elements in it (blocks and variables, but not coils, may have an execution order)",
         ),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or convert it in the original system"),
     };

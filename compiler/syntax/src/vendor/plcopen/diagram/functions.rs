@@ -86,6 +86,36 @@ pub fn signature(name: &str) -> Option<Signature> {
     row.map(|(_, inputs, output)| Signature { inputs, output })
 }
 
+/// The pins of functions that have others than IN, or IN1, IN2 and so on.
+const PINS: [(&[&str], &[&str]); 8] = [
+    (&["SEL"], &["G", "IN0", "IN1"]),
+    (&["LIMIT"], &["MN", "IN", "MX"]),
+    (&["SHL", "SHR", "ROL", "ROR"], &["IN", "N"]),
+    (&["LEFT", "RIGHT"], &["IN", "L"]),
+    (&["MID", "DELETE"], &["IN", "L", "P"]),
+    (&["INSERT"], &["IN1", "IN2", "P"]),
+    (&["REPLACE"], &["IN1", "IN2", "L", "P"]),
+    (&["MUX"], &["K"]),
+];
+
+/// Whether the pins of a standard function are its own, in its order, so that their values need no names.
+pub fn has_pins_in_order(name: &str, formals: &[&str]) -> bool {
+    let of = |names: &[&str]| names.iter().any(|it| name.eq_ignore_ascii_case(it));
+    let is = |formal: &str, expected: &str| formal.eq_ignore_ascii_case(expected);
+    let numbered = |formals: &[&str], first: usize| {
+        formals.iter().enumerate().all(|(at, it)| is(it, &format!("IN{}", at + first)))
+    };
+    match PINS.iter().find(|it| of(it.0)) {
+        Some((["MUX"], _)) => formals
+            .split_first()
+            .is_some_and(|(first, rest)| is(first, "K") && (numbered(rest, 0) || numbered(rest, 1))),
+        Some((_, pins)) => formals.len() == pins.len() && formals.iter().zip(*pins).all(|(a, b)| is(a, b)),
+        None => {
+            matches!(formals, [one] if one.is_empty() || is(one, "IN")) || formals.len() > 1 && numbered(formals, 1)
+        }
+    }
+}
+
 pub fn is_function(name: &str) -> bool {
     signature(name).is_some() || converted(name).is_some()
 }

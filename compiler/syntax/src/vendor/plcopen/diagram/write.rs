@@ -4,9 +4,10 @@
 
 use super::super::super::assembly::text;
 use super::super::super::assembly::{Chunk, Trouble};
+use super::super::super::unit::length_of_text;
 use super::context::{Context, Names};
 use super::expression::{Expression, LONGEST};
-use super::functions::is_function;
+use super::functions::{has_pins_in_order, is_function};
 use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Output, Storage, Wire};
 use super::order::in_order;
 use super::types::Types;
@@ -113,6 +114,7 @@ impl<'w> Writer<'w> {
         if let Some((node, what)) = refused {
             return Err(refuse(node, Trouble::NotSupported, format!("{what} in a diagram is not supported")));
         }
+        self.check_elements()?;
         for at in in_order(self.diagram, self.context.is_codesys) {
             self.carried.clear();
             let start = self.written.statements.len();
@@ -120,6 +122,35 @@ impl<'w> Writer<'w> {
             self.written.groups.push((at, start..self.written.statements.len()));
         }
         Ok(self.written)
+    }
+
+    /// What no editor draws: two elements with one number, a text that is not one expression, an instance in a block of another type.
+    fn check_elements(&self) -> Of<()> {
+        let mut seen = FxHashSet::default();
+        for node in &self.diagram.nodes {
+            if !seen.insert(node.id.as_str()) {
+                return Err(refuse(node, Trouble::Odd, format!("another element has the localId `{}`, too", node.id)));
+            }
+            let written = node.expression().map(|it| text(self.file, it));
+            match written.as_deref() {
+                Some("") if !self.context.is_codesys => {
+                    return Err(refuse(node, Trouble::Odd, "this element does not name a variable".to_owned()));
+                }
+                Some(written) if !is_one_expression(written) => {
+                    return Err(refuse(node, Trouble::Odd, format!("`{written}` is not an expression")));
+                }
+                Some(_) | None => {}
+            }
+            if let Kind::Block { ty, instance: Some(instance) } = &node.kind
+                && let Some(declared) = self.context.declared.variable(self.context.pou, &instance.text)
+                && !declared.eq_ignore_ascii_case(&ty.text)
+            {
+                let message =
+                    format!("this block is a `{}`, but `{}` is declared as `{declared}`", ty.text, instance.text);
+                return Err(refuse(node, Trouble::Odd, message));
+            }
+        }
+        Ok(())
     }
 
     fn element(&mut self, at: usize) -> Of<()> {
@@ -263,10 +294,12 @@ impl<'w> Writer<'w> {
             at.ok_or_else(|| refuse(format!("this wire comes from element {}, which does not exist", wire.from)))?;
         let node = &self.diagram.nodes[at];
         match (&node.kind, node.output(wire)) {
-            (Kind::Block { ty, .. }, None) => {
-                let output = wire.formal.as_deref().unwrap_or("of this place");
-                Err(refuse(format!("this wire comes from an output `{output}` that `{}` does not have", ty.text)))
-            }
+            (Kind::Block { ty, .. }, None) => Err(refuse(match wire.formal.as_deref() {
+                Some(output) => {
+                    format!("this wire comes from an output `{output}` that `{}` does not have", ty.text)
+                }
+                None => format!("this wire does not say from which output of `{}` it comes", ty.text),
+            })),
             (_, output) => Ok((at, output.unwrap_or(0))),
         }
     }
@@ -446,6 +479,8 @@ impl<'w> Writer<'w> {
         if asked.ordered || !self.executed.insert(at) {
             return Ok(());
         }
+        // What comes back to it reads what the last scan left.
+        let outer = std::mem::take(&mut self.open);
         let mut arguments = Vec::new();
         let mut enable = None;
         for input in &node.inputs {
@@ -463,6 +498,7 @@ impl<'w> Writer<'w> {
                 false => arguments.push((input.formal.as_str(), value)),
             }
         }
+        self.open = outer;
         if let Some(enable) = enable {
             let name = self.kept_in(ty, instance.as_ref(), node, "ENO");
             self.written.variables.push((name.clone(), "BOOL".to_owned()));
@@ -489,7 +525,9 @@ impl<'w> Writer<'w> {
         }
         let connected = node.inputs.iter().all(|it| !it.wires.is_empty());
         // CODESYS numbers the inputs of its operators.
-        let by_name = !self.context.is_codesys && (node.outputs.len() > 1 || !connected);
+        let formals: Vec<&str> = node.inputs.iter().map(|it| it.formal.as_str()).filter(|it| own(it)).collect();
+        let by_name = !self.context.is_codesys
+            && (node.outputs.len() > 1 || !connected || !has_pins_in_order(&ty.text, &formals));
         let is_named = instance.is_some() || by_name || self.context.has_function(&ty.text);
         for (formal, value) in arguments {
             let mut part = Vec::new();
@@ -551,6 +589,29 @@ impl<'w> Writer<'w> {
         }
         Ok(())
     }
+}
+
+/// Whether a text can be no more than one expression: it would be pasted among others.
+fn is_one_expression(written: &str) -> bool {
+    let mut depth = 0_usize;
+    let mut rest = written;
+    while let Some(first) = rest.chars().next() {
+        if let '\'' | '"' = first {
+            let length = 1 + length_of_text(&rest.as_bytes()[1..], rest.as_bytes()[0]);
+            rest = rest.get(length..).unwrap_or_default();
+            continue;
+        }
+        let is_more = first == ';' || ["(*", "*)", "//", "/*", ":="].iter().any(|it| rest.starts_with(it));
+        match first {
+            _ if is_more => return false,
+            '(' => depth += 1,
+            ')' if depth == 0 => return false,
+            ')' => depth -= 1,
+            _ => {}
+        }
+        rest = &rest[first.len_utf8()..];
+    }
+    depth == 0
 }
 
 fn refuse(node: &Node, trouble: Trouble, message: String) -> Refusal {
