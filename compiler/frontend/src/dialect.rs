@@ -155,6 +155,11 @@ impl Dialect {
         matches!(self, Self::Codesys | Self::Siemens)
     }
 
+    /// Sequential function charts as text.
+    pub(crate) const fn has_charts(self) -> bool {
+        matches!(self, Self::Iec | Self::Openplc)
+    }
+
     /// `RETURN(condition)`.
     pub const fn returns_on_conditions(self) -> bool {
         matches!(self, Self::Codesys)

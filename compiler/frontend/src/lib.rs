@@ -1,6 +1,7 @@
 //! Structured Text in, typed intermediate representation out.
 #![forbid(unsafe_code)]
 
+mod chart;
 mod declared;
 mod testing;
 
@@ -222,6 +223,7 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     log.asked_attributes = declared::asked_attributes(&files, sources);
     files.iter().for_each(|it| log.read_pragmas(it));
     files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
+    chart::expand(&mut files, log);
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.combined)).for_each(|it| report_combined(it, log));
     locate::resolve(&mut files, log);
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.nonretentive)).for_each(|it| note_nonretentive(it, log));

@@ -90,6 +90,9 @@ const ANY: &str = "__SYSTEM";
 /// The list of global variables of TwinCAT's libraries.
 pub(crate) const LIST: &str = "Global_Variables";
 
+/// What begins a sequential function chart, and the unit that one needs.
+const CHART: (&str, &str) = ("INITIAL_STEP", "__Chart");
+
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
 macro_rules! units {
@@ -347,6 +350,10 @@ pub const UNITS: &[Unit] = units! {
     Type     "RAMP"             "iec_ramp"         [Iec Openplc Openplc4];
     Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc Openplc4];
     Type     "SEMA"             "iec_sema"         [Iec Openplc Openplc4];
+    Type     "__Chart"          "chart"            "__Step" "__Action";
+    Type     "__Step"           "chart_step";
+    Type     "__Action"         "openplc_chart_action" [Openplc];
+    Type     "__Action"         "chart_action"     [Iec Cscape Codesys Openplc4 Logix Siemens];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "RESET_TIMER"      "reset_timer"      [Siemens] "IEC_TIMER";
     Type     "IEC_COUNTER"      (counter!(IEC_COUNTER, INT))       [Siemens];
@@ -415,7 +422,7 @@ static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| 
 
 /// What asks for a unit by another name than its own.
 static ASKING: LazyLock<FxHashSet<Key<'static>>> = LazyLock::new(|| {
-    [SYSTEM].into_iter().chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
+    [SYSTEM, CHART.0].into_iter().chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
 });
 
 /// The lengths of these and of units' names, by their first letters: most words of a program are
@@ -588,8 +595,10 @@ impl Uses {
             heads.see(word(at), (1..5).map(|it| word(at + it)));
             types.spaces += u32::from(word(at).eq_ignore_ascii_case("NAMESPACE"));
             self.uses_spaces |= word(at).eq_ignore_ascii_case("USING");
-            if dialect == Dialect::Codesys && heads.hand_on_any(word(at), before) {
-                self.named.extend(unit(ANY, dialect).map(|unit| Named {
+            let hands_on_any = dialect == Dialect::Codesys && heads.hand_on_any(word(at), before);
+            let begins_chart = word(at).eq_ignore_ascii_case(CHART.0) && tokens.kinds.get(at + 1) == Some(&Kind::Name);
+            for name in [(hands_on_any, ANY), (begins_chart, CHART.1)].into_iter().filter(|it| it.0).map(|it| it.1) {
+                self.named.extend(unit(name, dialect).map(|unit| Named {
                     unit,
                     at: Span { file, start, end },
                     dialect,

@@ -2,7 +2,10 @@
 //!
 //! The parser limits nesting ([`MAX_DEPTH`]), so later passes may recurse freely.
 
+mod chart;
+
 use crate::source::Span;
+pub use chart::{Association, Chart, Qualifier, Step, Transition};
 pub use staunch_ir::{Chars, RefKind};
 use staunch_runtime::Elementary;
 
@@ -232,6 +235,8 @@ pub struct Pou<'s> {
     pub result: Option<TypeSpec<'s>>,
     pub blocks: Vec<VarBlock<'s>>,
     pub body: Vec<Statement<'s>>,
+    /// What is its body instead, until that is written out.
+    pub chart: Option<Box<Chart<'s>>>,
     /// The METHODs and ACTIONs of a PROGRAM or FUNCTION_BLOCK.
     pub routines: Vec<Pou<'s>>,
     /// What `{attribute '…'}` says before it.
@@ -298,6 +303,7 @@ impl<'s> Pou<'s> {
             result: None,
             blocks: Vec::new(),
             body: Vec::new(),
+            chart: None,
             routines: Vec::new(),
             attributes: Vec::new(),
             external: None,

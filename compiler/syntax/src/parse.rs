@@ -36,6 +36,8 @@ mod type_block;
 mod mock;
 mod statement;
 
+mod chart;
+
 mod configuration;
 mod namespace;
 mod routine;

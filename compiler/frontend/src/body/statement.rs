@@ -48,7 +48,8 @@ impl<'s> Checker<'_, 's> {
         let span = statement.span;
         // Nobody wrote it.
         let covered = self.is_covered;
-        self.is_covered &= !is_once(statement) && !runs_suites(statement);
+        let is_own = matches!(statement.kind, Ast_::If { .. }) || span.start < span.end;
+        self.is_covered &= is_own && !is_once(statement) && !runs_suites(statement);
         if !matches!(statement.kind, Ast_::Empty | Ast_::Label(_) | Ast_::Error) {
             self.count_statement(span);
         }

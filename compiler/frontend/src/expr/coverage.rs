@@ -125,8 +125,12 @@ impl<'s> Checker<'_, 's> {
         self.count_point(Sort::Statement, CoverageKind::Statement, span);
     }
 
-    /// What a mock adds to a body is where the POU's name is, or where a test names what runs in its place.
-    fn is_made_up(&self, span: Span) -> bool {
+    /// What a mock adds to a body is where the POU's name is, or where a test names what runs in its place. What a chart becomes is
+    /// nowhere.
+    pub(crate) fn is_made_up(&self, span: Span) -> bool {
+        if span.start == span.end {
+            return true;
+        }
         let is_name = self.slot.is_some_and(|slot| self.decl.pous[slot].ast.name.span == span);
         is_name || self.decl.tests.exchanged.places.contains(&span)
     }

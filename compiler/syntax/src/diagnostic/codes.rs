@@ -151,6 +151,7 @@ codes! {
     E0512 Error "an assignment used as a value";
     E0513 Error "exception handling";
     E0514 Error "jumps";
+    E0515 Error "a mistake in a sequential function chart";
     E0901 Error "too large";
     E0902 Error "not supported yet";
     E0903 Error "too many temporary variables";

@@ -7,9 +7,11 @@ use crate::{
     source::Span,
 };
 
+mod chart;
 mod declared;
 mod operator;
 
+pub use chart::*;
 pub use declared::*;
 pub use operator::*;
 

@@ -8,7 +8,7 @@ use crate::{
 };
 
 use super::{
-    block_ends, declaration, diagnostics,
+    block_ends, chart, declaration, diagnostics,
     expression::{condition, expression, is_latch, postfix},
     foreign_block, foreign_statement, foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
@@ -48,7 +48,7 @@ fn list<'s>(
                 }
             }
             _ if ends(input) => return,
-            Kind::Name if routine::begins(input).is_some() => return,
+            Kind::Name if routine::begins(input).is_some() || chart::begins(input) => return,
             Kind::Name if unsupported::skip(input) || foreign_syntax::begin_or_end(input) => {}
             _ => statements.push(statement(input)),
         }

@@ -12,6 +12,7 @@ use crate::{
 };
 
 use super::{
+    chart,
     combinator::{Rule, ahead, name, reported, token, word},
     configuration::{bindings, configuration},
     declaration::{section, structure_members, type_spec},
@@ -187,7 +188,7 @@ fn contents<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>) {
         } else {
             pou.body.append(&mut more);
         }
-        if nested_unit(input) || routine::member(input, pou, contents) {
+        if nested_unit(input) || routine::member(input, pou, contents) || chart::element(input, pou) {
             continue;
         }
         if !opens_section(input.kind()) {

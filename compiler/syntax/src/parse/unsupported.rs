@@ -1,4 +1,4 @@
-//! Constructs that are known and refused by name: JMP, VAR_GENERIC, and a sequential function chart's text.
+//! Constructs that are known and refused by name: JMP and VAR_GENERIC.
 //! Their words are names everywhere else.
 
 use crate::{
@@ -33,17 +33,6 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
     if begins_generic(input) {
         generic_constants(input);
         recovery::skip_section(input);
-        return true;
-    }
-    if input.kind_ahead(1) != Kind::Name {
-        return false;
-    }
-    if ["INITIAL_STEP", "STEP", "TRANSITION"].iter().any(|it| word.eq_ignore_ascii_case(it)) {
-        input.report(
-            diagnostics::unsupported(span, "a sequential function chart (SFC)")
-                .help("write it as a CASE over its steps: `CASE step OF …`"),
-        );
-        skip_chart(input);
         return true;
     }
     false
@@ -167,13 +156,6 @@ fn has_operands_that_are_no_values(input: &mut In<'_, '_, '_>) -> bool {
         }
     }
     false
-}
-
-/// To the end of the POU that a chart is the body of: its steps and actions are left out with it.
-fn skip_chart(input: &mut In<'_, '_, '_>) {
-    while input.kind() != Kind::End && !opens_item(input.kind()) && !is_pou_end(input.kind()) {
-        input.take();
-    }
 }
 
 /// Behind the construct's end; a construct without one ends before the next POU.

@@ -1,0 +1,192 @@
+//! Sequential function charts, written out as statements: each step becomes an instance of a block of the library, and so does what
+//! runs each action. In each scan transitions are tested first, then steps are left and entered, then the actions run.
+
+mod matiec;
+mod standard;
+mod tree;
+
+use crate::ast::{Chart, File, Item, Name, Pou, PouKind, Statement, Transition, VarBlock, VarKind};
+use crate::dialect::Dialect;
+use crate::log::Log;
+use crate::spelling::Key;
+use crate::{Code, Diagnostic, Span, nearest};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// The time between scans, the controls of the actions, and which transitions fire.
+const CLOCK: &str = "__chart";
+const ACTIONS: &str = "__actions";
+const FIRED: &str = "__fired";
+
+/// Whether a name is one of those that are made here: no trace shows them.
+pub(crate) fn is_hidden(name: &str) -> bool {
+    [CLOCK, ACTIONS, FIRED].contains(&name)
+}
+
+/// Gives a body of statements to each POU that is a chart.
+pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
+    for pou in files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    }) {
+        let Some(chart) = pou.chart.take() else { continue };
+        let dialect = log.dialect(chart.span);
+        if !dialect.has_charts() {
+            log.report(not_in(dialect, chart.span));
+        }
+        if is_sound(&chart, pou, log) {
+            write_out(&chart, pou, dialect);
+        }
+    }
+}
+
+fn not_in(dialect: Dialect, at: Span) -> Diagnostic {
+    let it = Diagnostic::new(Code::E0902, at, format!("a sequential function chart (SFC) is not supported in `{}`", dialect.name()));
+    it.label("charts are available in `iec` and `openplc`").help("write it as a CASE over its steps: `CASE step OF …`")
+}
+
+/// Reports what is wrong with a chart as a whole. Whether it can be written out, so that what is in it is checked, too.
+fn is_sound(chart: &Chart<'_>, pou: &Pou<'_>, log: &mut Log<'_>) -> bool {
+    if let Some(statement) = pou.body.iter().find(|it| !matches!(it.kind, crate::ast::StatementKind::Empty)) {
+        log.report(
+            Diagnostic::new(Code::E0515, statement.span, "statements beside a sequential function chart")
+                .label("no step runs this")
+                .other(chart.span, "the chart is the body")
+                .help("move it into an ACTION"),
+        );
+    }
+    let named = |name: &Name<'_>| chart.steps.iter().any(|it| Key(it.name.text) == Key(name.text));
+    let mut is_sound = true;
+    for name in chart.transitions.iter().flat_map(|it| it.from.iter().chain(&it.to)).filter(|it| !named(it)) {
+        let it = Diagnostic::new(Code::E0515, name.span, format!("there is no step `{}`", name.text)).label("not a step of this chart");
+        log.report(match nearest(name.text, chart.steps.iter().map(|it| it.name.text)) {
+            Some(meant) => it.help(format!("did you mean `{meant}`?")).fix(name.span, meant),
+            None => it.help("declare it: `STEP Name: END_STEP`"),
+        });
+        is_sound = false;
+    }
+    if !chart.steps.iter().any(|it| it.is_initial) {
+        let at = chart.steps.first().map_or(chart.span, |it| it.name.span);
+        log.report(
+            Diagnostic::new(Code::E0515, at, "the chart has no INITIAL_STEP")
+                .label("no step is ever active")
+                .help("write INITIAL_STEP for the step that is active at the start"),
+        );
+        is_sound = false;
+    }
+    let mut seen = FxHashSet::default();
+    for step in chart.steps.iter().filter(|it| !seen.insert(Key(it.name.text))) {
+        log.report(
+            Diagnostic::new(Code::E0103, step.name.span, format!("`{}` is declared twice", step.name.text))
+                .label("another step has this name")
+                .help("rename one of them"),
+        );
+        is_sound = false;
+    }
+    is_sound
+}
+
+/// An action of a chart, and what controls it.
+#[derive(Clone, Copy)]
+struct Action<'s> {
+    name: Name<'s>,
+    /// Its number among the controls.
+    number: usize,
+    /// It is no ACTION, but a BOOL variable.
+    is_variable: bool,
+}
+
+/// The actions that steps name, by their names, and the ACTIONs that none does.
+struct Actions<'s> {
+    all: Vec<Action<'s>>,
+    by_name: FxHashMap<Key<'s>, usize>,
+}
+
+impl<'s> Actions<'s> {
+    fn of(chart: &Chart<'s>, pou: &Pou<'s>) -> Self {
+        let mut actions = Self { all: Vec::new(), by_name: FxHashMap::default() };
+        for routine in pou.routines.iter().filter(|it| it.kind == PouKind::Action) {
+            actions.add(routine.name, false);
+        }
+        for association in chart.steps.iter().flat_map(|it| &it.associations) {
+            actions.add(association.action, true);
+        }
+        actions
+    }
+
+    fn add(&mut self, name: Name<'s>, is_variable: bool) {
+        let number = self.all.len();
+        self.by_name.entry(Key(name.text)).or_insert_with(|| {
+            self.all.push(Action { name, number, is_variable });
+            number
+        });
+    }
+
+    fn named(&self, name: Name<'s>) -> Option<Action<'s>> {
+        self.by_name.get(&Key(name.text)).map(|it| self.all[*it])
+    }
+
+    fn variables(&self) -> impl Iterator<Item = &Action<'s>> {
+        self.all.iter().filter(|it| it.is_variable)
+    }
+}
+
+fn write_out<'s>(chart: &Chart<'s>, pou: &mut Pou<'s>, dialect: Dialect) {
+    let actions = Actions::of(chart, pou);
+    pou.blocks.push(variables(chart, &actions));
+    if !chart.transitions.is_empty() {
+        pou.blocks.push(fired(chart));
+    }
+    let (routines, bodies): (Vec<_>, Vec<_>) = std::mem::take(&mut pou.routines).into_iter().partition(|it| it.kind != PouKind::Action);
+    pou.routines = routines;
+    let mut body = vec![tree::call(tree::named(CLOCK, chart.span), Vec::new())];
+    match dialect {
+        Dialect::Openplc => matiec::write(chart, &actions, &mut body),
+        Dialect::Iec | Dialect::Cscape | Dialect::Codesys | Dialect::Openplc4 | Dialect::Logix | Dialect::Siemens => {
+            standard::write(chart, &actions, &mut body);
+        }
+    }
+    for action in bodies {
+        let Some(of) = actions.named(action.name) else { continue };
+        body.push(tree::when(tree::control(of, "Q", action.name.span), action.body));
+    }
+    pou.body = body;
+}
+
+/// The steps, and what the chart needs besides.
+fn variables<'s>(chart: &Chart<'s>, actions: &Actions<'s>) -> VarBlock<'s> {
+    let mut vars = vec![tree::variable(Name { text: CLOCK, span: chart.span }, "__Chart")];
+    for step in &chart.steps {
+        let mut variable = tree::variable(step.name, "__Step");
+        variable.initial = step.is_initial.then(|| tree::initially("X", step.name.span));
+        vars.push(variable);
+    }
+    if !actions.all.is_empty() {
+        vars.push(tree::array(ACTIONS, actions.all.len(), "__Action", chart.span));
+    }
+    VarBlock { vars, ..VarBlock::new(VarKind::Var, chart.span) }
+}
+
+fn fired<'s>(chart: &Chart<'s>) -> VarBlock<'s> {
+    let vars = vec![tree::array(FIRED, chart.transitions.len(), "BOOL", chart.span)];
+    VarBlock { vars, ..VarBlock::new(VarKind::Temp, chart.span) }
+}
+
+/// The numbers of the transitions in the order in which they are tested: those with a priority among the others as MATIEC inserts
+/// them, the lowest first.
+fn tested(transitions: &[Transition<'_>]) -> Vec<usize> {
+    let mut order: Vec<usize> = Vec::new();
+    let priority = |at: usize| transitions[at].priority.unwrap_or(0);
+    for (at, transition) in transitions.iter().enumerate() {
+        let place = match transition.priority {
+            Some(own) => order.iter().position(|it| priority(*it) > own).unwrap_or(order.len()),
+            None => order.len(),
+        };
+        order.insert(place, at);
+    }
+    order
+}
+
+/// Leaves and enters the steps of what fires.
+fn moved<'s>(steps: &[Name<'s>], method: &'static str) -> Vec<Statement<'s>> {
+    steps.iter().map(|it| tree::call(tree::member(tree::name(*it), method), Vec::new())).collect()
+}

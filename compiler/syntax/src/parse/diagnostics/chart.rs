@@ -1,0 +1,58 @@
+//! Mistakes in the text of a sequential function chart.
+
+use crate::{
+    ast::{Name, PouKind, Qualifier},
+    diagnostic::{Code, Diagnostic, wording::article},
+    source::Span,
+    spelling::nearest,
+};
+
+/// A chart in what is called without a state.
+pub fn chart_outside(span: Span, kind: PouKind) -> Diagnostic {
+    let word = kind.word();
+    Diagnostic::new(Code::E0515, span, format!("{} cannot be a sequential function chart", article(word)))
+        .label("a step of a chart")
+        .help("write the chart as the body of a PROGRAM or FUNCTION_BLOCK")
+}
+
+/// `STEP Fill: Valve(N);` without END_STEP.
+pub fn open_element(opened: Span, end: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0515, opened, format!("{end} is missing"))
+        .label("this is not closed")
+        .help(format!("write `{end}` where it ends"))
+}
+
+/// `Valve(M)`
+pub fn unknown_qualifier(name: Name<'_>) -> Diagnostic {
+    let it = Diagnostic::new(Code::E0515, name.span, format!("`{}` is not an action qualifier", name.text))
+        .label("expected a qualifier")
+        .help(format!("qualifiers are {}", Qualifier::names().collect::<Vec<_>>().join(", ")));
+    match nearest(name.text, Qualifier::names()) {
+        Some(meant) => it.fix(name.span, meant),
+        None => it,
+    }
+}
+
+/// `Valve(L)`
+pub fn qualifier_without_time(name: Name<'_>) -> Diagnostic {
+    let word = name.text.to_ascii_uppercase();
+    Diagnostic::new(Code::E0515, name.span, format!("the qualifier {word} needs a time"))
+        .label("expected a time after it")
+        .help(format!("write it after a comma: `{word}, T#5s`"))
+}
+
+/// `Valve(N, T#5s)`
+pub fn qualifier_with_time(name: Name<'_>, time: Span) -> Diagnostic {
+    let word = name.text.to_ascii_uppercase();
+    Diagnostic::new(Code::E0515, time, format!("the qualifier {word} has no time"))
+        .label("this says nothing")
+        .help("remove it, or write L (limited), D (delayed), SD, DS or SL")
+        .fix(time, "")
+}
+
+/// `TRANSITION x := y; END_TRANSITION`
+pub fn transition_without_steps(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0515, span, "a transition without its steps")
+        .label("expected FROM")
+        .help("write the steps before and after it: `TRANSITION FROM a TO b := condition; END_TRANSITION`")
+}
