@@ -1,6 +1,7 @@
 //! PLCopen XML (TC6), as CODESYS, TwinCAT, Beremiz and OpenPLC's editor write it: declarations are elements, bodies are
 //! escaped text or diagrams. CODESYS adds declarations as text, and methods, properties and lists, to the standard's elements.
 
+mod chart;
 mod declaration;
 mod diagram;
 mod tasks;
@@ -11,7 +12,7 @@ use super::xml::{Broken, Element, Part, Reader};
 use core::ops::Range;
 use declaration::interface;
 use diagram::{Context, Declared, Names, Refusal, Written};
-use rustc_hash::FxHashSet;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Whether the root `project` is PLCopen's: by its namespace, or by what is in it, as CODESYS 3.3 wrote it without one.
 pub fn is_project(file: &str, root: &Range<usize>) -> bool {
@@ -29,7 +30,7 @@ pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
         out.write("{dialect 'codesys'}\n", &reader.last());
     }
     let mut tasks = Vec::new();
-    let has_diagrams = file.contains("<LD") || file.contains("<FBD");
+    let has_diagrams = ["<LD", "<FBD", "<SFC"].iter().any(|it| file.contains(it));
     let declared = if has_diagrams { Declared::of(file) } else { Declared::default() };
     if let Err(broken) = project(file, &mut reader, &declared, codesys, &mut tasks, &mut out) {
         let message = format!("this PLCopen XML is not well-formed: {}", broken.why);
@@ -57,8 +58,13 @@ fn project<'t>(
             "pou" | "Interface" => {
                 let name = element.attribute(file, "name").unwrap_or_default();
                 let context = Context { declared, pou: name, action: "", is_codesys: codesys };
-                let mut diagrams =
-                    Diagrams { context, action: String::new(), names: Names::default(), variables: Vec::new() };
+                let mut diagrams = Diagrams {
+                    context,
+                    action: String::new(),
+                    names: Names::default(),
+                    variables: Vec::new(),
+                    transitions: FxHashMap::default(),
+                };
                 unit(file, reader, What::Unit, element, &mut diagrams)?.write(file, out);
             }
             "globalVars" => {
@@ -90,6 +96,8 @@ struct Diagrams<'s> {
     names: Names,
     /// Variables of the POU that its actions' diagrams have added.
     variables: Vec<(String, String)>,
+    /// The conditions that a chart names, by their names in capitals.
+    transitions: FxHashMap<String, chart::Transition>,
 }
 
 impl Diagrams<'_> {
@@ -166,8 +174,12 @@ fn whole_unit<'t>(
                 continue;
             }
             "body" => {
-                let body = body(file, reader, diagrams)?;
+                let body = body(file, reader, &mut unit, diagrams)?;
                 unit.take_body(body, element.place);
+                continue;
+            }
+            "transitions" => {
+                transitions(file, reader, diagrams)?;
                 continue;
             }
             "action" | "Action" => What::Action,
@@ -233,13 +245,59 @@ fn parts<'t>(
     Ok(())
 }
 
-fn body<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<Body, Broken> {
+/// The conditions of a chart that have names.
+fn transitions<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<(), Broken> {
+    let mut name = String::new();
+    let mut open = 1_usize;
+    while open > 0 {
+        let element = match reader.part()? {
+            Some(Part::Open(element)) => element,
+            Some(Part::Close) => {
+                open -= 1;
+                continue;
+            }
+            Some(Part::Text(_)) => continue,
+            None => break,
+        };
+        let found = match element.name {
+            "transition" => {
+                name = element.attribute(file, "name").unwrap_or_default().to_ascii_uppercase();
+                open += 1;
+                continue;
+            }
+            "ST" => chart::Transition::Text(text(reader)?),
+            "LD" | "FBD" => chart::Transition::Diagram(diagram::diagram(file, reader)?),
+            other => match language(other) {
+                Some(language) => {
+                    reader.skip()?;
+                    chart::Transition::Other(language)
+                }
+                None => {
+                    open += 1;
+                    continue;
+                }
+            },
+        };
+        diagrams.transitions.insert(std::mem::take(&mut name), found);
+    }
+    Ok(())
+}
+
+fn body<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    unit: &mut Unit<'t>,
+    diagrams: &mut Diagrams<'_>,
+) -> Result<Body, Broken> {
     let mut body = Body::None;
     while let Some(part) = reader.part()? {
         match part {
             Part::Open(element) => match element.name {
                 "ST" => body = Body::Text(text(reader)?),
                 "LD" | "FBD" => body = diagram(file, reader, diagrams)?,
+                "SFC" if unit.what == What::Unit && !diagrams.context.is_codesys => {
+                    body = chart(file, reader, unit, diagrams)?;
+                }
                 name => {
                     body = language(name).map_or(body, |it| Body::Other(it, element.place));
                     reader.skip()?;
@@ -260,11 +318,31 @@ fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'
             diagrams.variables.extend(variables);
             statements
         }
-        Err(Refusal { place, trouble, message }) => {
-            let message = format!("the diagram of `{}`: {message}", diagrams.context.pou);
-            vec![Chunk { place, says: Says::Wrong(trouble, message) }]
-        }
+        Err(refusal) => refused(refusal, &format!("the diagram of `{}`", diagrams.context.pou)),
     }))
+}
+
+fn chart<'t>(
+    file: &'t str,
+    reader: &mut Reader<'t>,
+    unit: &mut Unit<'t>,
+    diagrams: &mut Diagrams<'_>,
+) -> Result<Body, Broken> {
+    let parts = chart::Parts::of(unit, &diagrams.transitions);
+    let read = chart::read(file, reader, diagrams.context, &mut diagrams.names, parts)?;
+    Ok(Body::Text(match read {
+        Ok(chart::Written { text, variables }) => {
+            diagrams.variables.extend(variables);
+            text
+        }
+        Err(refusal) => refused(refusal, &format!("the chart of `{}`", diagrams.context.pou)),
+    }))
+}
+
+/// What is reported instead of a body.
+fn refused(refusal: Refusal, what: &str) -> Vec<Chunk> {
+    let Refusal { place, trouble, message } = refusal;
+    vec![Chunk { place, says: Says::Wrong(trouble, format!("{what}: {message}")) }]
 }
 
 /// The text of an element, in XHTML's elements or not.

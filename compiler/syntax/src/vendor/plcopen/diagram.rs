@@ -17,7 +17,11 @@ use super::super::xml::{Broken, Reader};
 pub use context::{Context, Names};
 pub use declared::Declared;
 use dispute::dispute;
-pub use write::{Refusal, Written};
+pub use expression::Expression;
+pub use node::{Diagram, Name, Wire};
+pub use parse::{diagram, node, wires};
+pub use types::Types;
+pub use write::{Refusal, Writer, Written};
 
 /// A diagram that was opened, to its end.
 pub fn read<'t>(
@@ -26,13 +30,13 @@ pub fn read<'t>(
     context: Context<'_>,
     names: &mut Names,
 ) -> Result<Result<Written, Refusal>, Broken> {
-    let diagram = parse::diagram(file, reader)?;
-    let types = types::Types::of(file, &diagram, context.declared, context.pou);
-    let mut written = write::Writer::new(file, &diagram, &types, context, names).run();
+    let drawn = diagram(file, reader)?;
+    let types = Types::of(file, &drawn, context.declared, context.pou);
+    let mut written = Writer::new(file, &drawn, &types, context, names).run();
     if let (Ok(written), false) = (&mut written, context.is_codesys)
-        && let Some((first, then)) = dispute(file, &diagram, &written.statements, &written.groups)
+        && let Some((first, then)) = dispute(file, &drawn, &written.statements, &written.groups)
     {
-        let [first, then] = [first, then].map(|it| &diagram.nodes[it]);
+        let [first, then] = [first, then].map(|it| &drawn.nodes[it]);
         let [is_first, is_later] = [first, then].map(|it| it.shown(file));
         let message = format!(
             "{is_first} is executed before {is_later}, which is above it or to its left: the order is that of the file"

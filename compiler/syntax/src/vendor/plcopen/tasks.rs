@@ -49,7 +49,7 @@ pub fn instance<'t>(file: &'t str, element: &Element<'t>, task: Option<&Chunk>, 
     out.push(Chunk::words(" : ", place));
     // CODESYS's programs are their own instances.
     let named = |it: &&str| element.attribute(file, it).is_some_and(|it| !it.is_empty());
-    let ty = ["typeName", "name"].into_iter().find(|it| named(it));
+    let ty = ["typeName", "type", "name"].into_iter().find(|it| named(it));
     out.extend(ty.and_then(|it| element.attribute_text(file, it)));
     out.push(Chunk::words(";\n", place));
 }
@@ -66,10 +66,15 @@ pub fn close(out: &mut Vec<Chunk>, place: &Range<usize>) {
     }
 }
 
-/// `T#20ms`, or ISO 8601's `PT0.02S`, as Structured Text.
+/// `T#20ms`, ISO 8601's `PT0.02S`, or a time of day of XML, `00:00:00.02`, as Structured Text.
 fn duration(text: &str) -> String {
-    match text.strip_prefix("PT").and_then(|it| it.strip_suffix('S')) {
-        Some(seconds) if seconds.bytes().all(|it| it.is_ascii_digit() || it == b'.') => format!("T#{seconds}s"),
-        Some(_) | None => text.to_owned(),
+    let is_number = |it: &str| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit() || it == b'.');
+    let of_day: Vec<&str> = text.split(':').collect();
+    match (text.strip_prefix("PT").and_then(|it| it.strip_suffix('S')), of_day.as_slice()) {
+        (Some(seconds), _) if is_number(seconds) => format!("T#{seconds}s"),
+        (None, [hours, minutes, seconds]) if of_day.iter().all(|it| is_number(it)) => {
+            format!("T#{hours}h{minutes}m{seconds}s")
+        }
+        _ => text.to_owned(),
     }
 }

@@ -2,11 +2,32 @@
 
 use super::super::super::assembly::Chunk;
 use super::super::super::assembly::text;
+use super::super::super::xml::Element;
 use core::ops::Range;
 
 #[derive(Debug, Default)]
 pub struct Diagram {
     pub nodes: Vec<Node>,
+}
+
+impl Diagram {
+    /// What is wired to the variable or coil of a name.
+    pub fn wires_to(&self, file: &str, name: &str) -> Option<&[Wire]> {
+        let is_meant = |it: &&Node| match &it.kind {
+            Kind::Sink(target) | Kind::Coil(target) => text(file, target).eq_ignore_ascii_case(name),
+            Kind::LeftRail
+            | Kind::RightRail
+            | Kind::Source(_)
+            | Kind::Both(_)
+            | Kind::Contact(_)
+            | Kind::Block { .. }
+            | Kind::Connector(_)
+            | Kind::Continuation(_)
+            | Kind::Refused(_) => false,
+        };
+        let node = self.nodes.iter().find(is_meant)?;
+        Some(node.inputs.first().map_or(&[], |it| it.wires.as_slice()))
+    }
 }
 
 /// An element.
@@ -50,6 +71,20 @@ pub enum Kind {
 pub struct Name {
     pub text: String,
     pub chunk: Chunk,
+}
+
+impl Name {
+    /// What an attribute says, if it says something.
+    pub fn of(file: &str, element: &Element<'_>, attribute: &str) -> Option<Self> {
+        let chunk = element.attribute_text(file, attribute)?;
+        let text = text(file, std::slice::from_ref(&chunk));
+        (!text.is_empty()).then_some(Self { text, chunk })
+    }
+
+    /// One that is missing.
+    pub fn empty(place: &Range<usize>) -> Self {
+        Self { text: String::new(), chunk: Chunk::words("", place) }
+    }
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,5 @@
 //! The elements of LD and FBD, as the file holds them.
 
-use super::super::super::assembly::text;
 use super::super::super::xml::{Broken, Element, Part, Reader};
 use super::node::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
 
@@ -17,7 +16,8 @@ pub fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Diagram, Br
     Ok(found)
 }
 
-fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> Result<Option<Node>, Broken> {
+/// An element that was opened, to its end.
+pub fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> Result<Option<Node>, Broken> {
     let named = |name: &str| element.attribute(file, name).unwrap_or_default().to_owned();
     let kind = match element.name {
         "leftPowerRail" => Kind::LeftRail,
@@ -28,11 +28,7 @@ fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -> Re
         "contact" => Kind::Contact(Vec::new()),
         "coil" => Kind::Coil(Vec::new()),
         "block" => {
-            let name = |attribute| {
-                let chunk = element.attribute_text(file, attribute)?;
-                let text = text(file, std::slice::from_ref(&chunk));
-                (!text.is_empty()).then_some(Name { text, chunk })
-            };
+            let name = |attribute| Name::of(file, element, attribute);
             let Some(ty) = name("typeName") else { return skipped(reader) };
             Kind::Block { ty, instance: name("instanceName") }
         }
@@ -138,7 +134,8 @@ fn pin<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, node: 
     Ok(())
 }
 
-fn wires<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Vec<Wire>, Broken> {
+/// What a connection point that was opened is wired to, to its end.
+pub fn wires<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Vec<Wire>, Broken> {
     let mut found = Vec::new();
     while let Some(part) = reader.part()? {
         match part {

@@ -124,6 +124,13 @@ impl<'w> Writer<'w> {
         Ok(self.written)
     }
 
+    /// What wires carry that a condition is made of, with the statements that find it: nothing else of the diagram is executed.
+    pub fn values(mut self, wired: &[&'w [Wire]]) -> Of<(Vec<Option<Rc<Expression>>>, Written)> {
+        self.check_elements()?;
+        let values = wired.iter().map(|it| self.value(it, Asked::default())).collect::<Of<_>>()?;
+        Ok((values, self.written))
+    }
+
     /// What no editor draws: two elements with one number, a text that is not one expression, an instance in a block of another type.
     fn check_elements(&self) -> Of<()> {
         let mut seen = FxHashSet::default();
