@@ -50,7 +50,7 @@ use staunch_syntax::{diagnostic, foreign, lex, parse, source, spelling};
 
 use lex::{Declared, Known, Subject};
 use log::Log;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::Program;
 use types::coverage::Coverage;
 use types::whole::Whole;
@@ -88,8 +88,14 @@ impl Compilation {
         let renamed = self.diagnostics.iter().filter(|it| it.code == Code::W0609);
         self.renamed = renamed.filter_map(|it| it.fix.clone()).collect();
         self.diagnostics.retain(|it| !allowances.cover(it));
-        // A text of pieces is not in the order of its file.
-        self.diagnostics.sort_by_key(|it| (it.span.file, sources.get(it.span.file).in_file(it.span).start));
+        // A text of pieces is not in the order of its file, and may say twice what is there once: a contact on two wires.
+        let place = |it: &Diagnostic| sources.get(it.span.file).in_file(it.span);
+        let mut seen = FxHashSet::default();
+        self.diagnostics.retain(|it| {
+            let is_assembled = sources.get(it.span.file).is_assembled();
+            !is_assembled || seen.insert((it.code, it.span.file, place(it), it.message.clone()))
+        });
+        self.diagnostics.sort_by_key(|it| (it.span.file, place(it).start));
     }
 
     pub fn has_errors(&self) -> bool {
