@@ -3,6 +3,7 @@
 
 mod assembly;
 mod device;
+mod diagram;
 mod exp;
 mod json;
 mod l5x;

@@ -8,6 +8,7 @@ mod value;
 pub use scan::Broken;
 pub use value::{Kind, Member, Value};
 
+use core::ops::Range;
 use scan::Scanner;
 
 /// Editors nest a dozen levels.
@@ -16,6 +17,14 @@ const DEEPEST: usize = 128;
 /// The value that a file is.
 pub fn parse(file: &str) -> Result<Value, Broken> {
     let mut scanner = Scanner::new(file);
+    let value = scanner.value(DEEPEST)?;
+    scanner.end()?;
+    Ok(value)
+}
+
+/// The value that a part of a file is.
+pub fn parse_within(file: &str, part: Range<usize>) -> Result<Value, Broken> {
+    let mut scanner = Scanner::within(&file[..part.end], part.start);
     let value = scanner.value(DEEPEST)?;
     scanner.end()?;
     Ok(value)

@@ -4,6 +4,7 @@
 
 mod data_type;
 mod device;
+mod drawn;
 mod global;
 mod object;
 mod other_language;
@@ -34,7 +35,7 @@ pub fn is_project(text: &str) -> bool {
 pub fn read(path: &str, text: &str) -> Option<Assembly> {
     let mut out = Assembly::default();
     match file(path, text)? {
-        File::OtherLanguage(language) => other_language::read(text, language, &mut out),
+        File::OtherLanguage(word) => other_language::read(text, word, &mut out),
         File::Pou => whole(text, &mut out, pou::read),
         File::Project => whole(text, &mut out, project),
         File::Configuration => whole(text, &mut out, device::configuration),

@@ -3,15 +3,16 @@
 
 mod chart;
 mod declaration;
-mod diagram;
+mod declared;
+mod drawn;
 mod tasks;
 
 use super::assembly::{Assembly, Chunk, Says, Trouble};
+use super::diagram::{self, Context, Declared, Names, Refusal, Rules, Written};
 use super::unit::{Body, Unit, What};
 use super::xml::{Broken, Element, Part, Reader};
 use core::ops::Range;
 use declaration::interface;
-use diagram::{Context, Declared, Names, Refusal, Written};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Whether the root `project` is PLCopen's: by its namespace, or by what is in it, as CODESYS 3.3 wrote it without one.
@@ -31,7 +32,7 @@ pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
     }
     let mut tasks = Vec::new();
     let has_diagrams = ["<LD", "<FBD", "<SFC"].iter().any(|it| file.contains(it));
-    let declared = if has_diagrams { Declared::of(file) } else { Declared::default() };
+    let declared = if has_diagrams { declared::declared(file) } else { Declared::default() };
     if let Err(broken) = project(file, &mut reader, &declared, codesys, &mut tasks, &mut out) {
         let message = format!("this PLCopen XML is not well-formed: {}", broken.why);
         out.problem(Trouble::Broken, message, &broken.place);
@@ -57,7 +58,8 @@ fn project<'t>(
             }
             "pou" | "Interface" => {
                 let name = element.attribute(file, "name").unwrap_or_default();
-                let context = Context { declared, pou: name, action: "", is_codesys: codesys };
+                let rules = if codesys { Rules::Codesys } else { Rules::Beremiz };
+                let context = Context { declared, pou: name, action: "", rules };
                 let mut diagrams = Diagrams {
                     context,
                     action: String::new(),
@@ -266,7 +268,7 @@ fn transitions<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagra
                 continue;
             }
             "ST" => chart::Transition::Text(text(reader)?),
-            "LD" | "FBD" => chart::Transition::Diagram(diagram::diagram(file, reader)?),
+            "LD" | "FBD" => chart::Transition::Diagram(drawn::diagram(file, reader)?),
             other => match language(other) {
                 Some(language) => {
                     reader.skip()?;
@@ -295,7 +297,7 @@ fn body<'t>(
             Part::Open(element) => match element.name {
                 "ST" => body = Body::Text(text(reader)?),
                 "LD" | "FBD" => body = diagram(file, reader, diagrams)?,
-                "SFC" if unit.what == What::Unit && !diagrams.context.is_codesys => {
+                "SFC" if unit.what == What::Unit && !diagrams.context.is_codesys() => {
                     body = chart(file, reader, unit, diagrams)?;
                 }
                 name => {
@@ -312,8 +314,8 @@ fn body<'t>(
 
 fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>, diagrams: &mut Diagrams<'_>) -> Result<Body, Broken> {
     let context = Context { action: &diagrams.action, ..diagrams.context };
-    let read = diagram::read(file, reader, context, &mut diagrams.names)?;
-    Ok(Body::Text(match read {
+    let drawn = drawn::diagram(file, reader)?;
+    Ok(Body::Text(match diagram::write(file, &drawn, context, &mut diagrams.names) {
         Ok(Written { statements, variables, groups: _ }) => {
             diagrams.variables.extend(variables);
             statements

@@ -19,7 +19,12 @@ pub struct Scanner<'t> {
 
 impl<'t> Scanner<'t> {
     pub const fn new(file: &'t str) -> Self {
-        Self { file, at: 0 }
+        Self::within(file, 0)
+    }
+
+    /// From a place in the file on.
+    pub const fn within(file: &'t str, at: usize) -> Self {
+        Self { file, at }
     }
 
     /// The next value, and in it values of as many levels more.

@@ -1,7 +1,9 @@
-//! A POU in a file of its own whose body is not Structured Text: its head and its variables are, and count as such; its
-//! body is refused by name.
+//! A POU in a file of its own whose body is not Structured Text: its head and its variables are, and count as such. A diagram is read;
+//! another body is refused by name.
 
 use super::super::assembly::{Assembly, Chunk, Trouble};
+use super::super::json;
+use super::drawn::{self, Language, Pou};
 use core::ops::Range;
 
 /// The editor's words for its languages, which are the endings of its files but for two.
@@ -24,22 +26,52 @@ pub fn named(word: &str) -> Option<&'static str> {
     LANGUAGES.iter().find(|it| it.0 == word).map(|it| it.1)
 }
 
-/// The language of a POU's file: its name says it, and it begins as a POU does.
+/// The editor's word for the language of a POU's file: its name says it, and it begins as a POU does.
 pub fn language(name: &str, text: &str) -> Option<&'static str> {
-    let language = named(name.rsplit_once('.')?.1)?;
-    head(text).map(|_| language)
+    let word = name.rsplit_once('.')?.1;
+    let (word, _) = LANGUAGES.iter().find(|it| it.0 == word)?;
+    head(text).map(|_| *word)
 }
 
-pub fn read(file: &str, language: &str, out: &mut Assembly) {
+pub fn read(file: &str, word: &str, out: &mut Assembly) {
     let Some((start, end)) = head(file) else { return };
     let (name, after) = name(file, start);
     let declared = declared(file, after);
-    let body = body(file, declared);
     out.copy(file, &[Chunk::verbatim(0..declared)]);
     out.write("\n", &(declared..declared));
-    let message = format!("the body of `{}` is {language}, not Structured Text", &file[name]);
-    out.problem(Trouble::OtherLanguage, message, &body);
+    match Language::named(word) {
+        Some(language) => {
+            let variables = drawn::in_text(&file[after..declared]);
+            diagram(file, (declared, end), language, &Pou { name: &file[name], variables }, out);
+        }
+        // A FUNCTION_BLOCK in C++ is refused where it is called.
+        None if word == "cpp" && end == "END_FUNCTION_BLOCK" => out.write("{{ }}\n", &body(file, declared)),
+        None => {
+            let language = named(word).unwrap_or_default();
+            let message = format!("the body of `{}` is {language}, not Structured Text", &file[name]);
+            out.problem(Trouble::OtherLanguage, message, &body(file, declared));
+        }
+    }
     out.write(&format!("{end}\n"), &(file.len()..file.len()));
+}
+
+/// A diagram, between the variables and the word that ends the POU.
+fn diagram(file: &str, (start, end): (usize, &str), language: Language, pou: &Pou<'_>, out: &mut Assembly) {
+    let inner = file[start..].trim_end();
+    let length = inner.len().checked_sub(end.len()).filter(|it| inner.is_char_boundary(*it));
+    let is_closed = length.is_some_and(|it| inner[it..].eq_ignore_ascii_case(end));
+    let part = start..start + length.filter(|_| is_closed).unwrap_or(inner.len());
+    match json::parse_within(file, part) {
+        Ok(value) => {
+            let (statements, variables) = drawn::read(file, &value, language, pou, out);
+            out.write(&variables, &(start..start));
+            out.copy(file, &statements);
+        }
+        Err(broken) => {
+            let message = format!("the diagram of `{}` is not well-formed JSON: {}", pou.name, broken.why);
+            out.problem(Trouble::Broken, message, &broken.place);
+        }
+    }
 }
 
 /// Where the keyword of the POU ends, and the word that ends the POU.

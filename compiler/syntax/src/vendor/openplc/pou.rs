@@ -3,6 +3,7 @@
 use super::super::assembly::{Assembly, Chunk, Trouble};
 use super::super::json::{Kind, Value};
 use super::super::unit::{Body, Unit, What};
+use super::drawn::{self, Language, Pou};
 use super::object::{Object, comment};
 use super::other_language;
 use super::variable::{blocks, unknown};
@@ -15,7 +16,7 @@ pub fn read(file: &str, value: &Value, out: &mut Assembly) {
     let mut unit = Unit::new(What::Unit, name.raw(file), whole.start());
     unit.end = value.place.end - 1..value.place.end;
     unit.declaration = declaration(&data, word, name, out);
-    unit.body = body(&data, out);
+    unit.body = body(&data, name, &mut unit.declaration, out);
     unit.write(file, out);
 }
 
@@ -50,9 +51,19 @@ fn declaration(data: &Object<'_>, word: &str, name: &Value, out: &mut Assembly) 
     chunks
 }
 
-fn body(data: &Object<'_>, out: &mut Assembly) -> Body {
+fn body(data: &Object<'_>, name: &Value, declaration: &mut Vec<Chunk>, out: &mut Assembly) -> Body {
     let Some(body) = data.object("body", out) else { return Body::None };
     let word = body.word("language", out).unwrap_or("st");
+    if let (Some(language), Some(value)) = (Language::named(word), body.get("value")) {
+        let variables = match data.text("variablesText", out) {
+            Some(text) => drawn::in_text(&text.text(data.file)),
+            None => drawn::in_table(data, out),
+        };
+        let pou = Pou { name: name.raw(data.file), variables };
+        let (statements, variables) = drawn::read(data.file, value, language, &pou, out);
+        declaration.push(Chunk::words(variables, &body.start()));
+        return Body::Text(statements);
+    }
     let language = match word {
         "st" => return body.get("value").map_or(Body::None, |it| text(data.file, it, out)),
         "sfc" => Some("a sequential function chart (SFC)"),

@@ -1,6 +1,6 @@
 //! What a chart is made of: its elements, in the order of the file, and what is connected with what.
 
-use super::super::diagram::{Diagram, Name, Wire};
+use super::super::super::diagram::{Diagram, Name, Wire};
 use super::Chunk;
 use core::ops::Range;
 

@@ -2,7 +2,7 @@
 //! OpenPLC's kind writes them: it asks of each element what comes before it.
 
 use super::super::super::assembly::Trouble;
-use super::super::diagram::{Refusal, Wire};
+use super::super::super::diagram::{Refusal, Wire};
 use super::element::{Chart, Element, Kind};
 use rustc_hash::{FxHashMap, FxHashSet};
 

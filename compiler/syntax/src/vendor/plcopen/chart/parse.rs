@@ -1,7 +1,8 @@
 //! The elements of SFC, as the file holds them.
 
 use super::super::super::xml::{Broken, Element as Tag, Part, Reader};
-use super::super::diagram::{Name, Wire, node, wires};
+use super::super::super::diagram::{Name, Wire};
+use super::super::drawn::{name, node, wires};
 use super::super::{language, text};
 use super::element::{Action, Chart, Condition, Does, Element, Kind};
 
@@ -14,12 +15,12 @@ pub fn chart<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Chart, Broken
             Part::Close => break,
             Part::Text(_) => continue,
         };
-        let name = |attribute| Name::of(file, &tag, attribute);
+        let named = |attribute| name(file, &tag, attribute);
         let empty = || Name::empty(&tag.place);
         let kind = match tag.name {
             "step" => {
                 let is_initial = tag.attribute(file, "initialStep") == Some("true");
-                Kind::Step { name: name("name").unwrap_or_else(empty), is_initial }
+                Kind::Step { name: named("name").unwrap_or_else(empty), is_initial }
             }
             "macroStep" => Kind::Refused("a macro step"),
             "transition" => {
@@ -27,7 +28,7 @@ pub fn chart<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Chart, Broken
                 Kind::Transition { priority, condition: Condition::Missing }
             }
             "actionBlock" => Kind::Actions(Vec::new()),
-            "jumpStep" => Kind::Jump(name("targetName").unwrap_or_else(empty)),
+            "jumpStep" => Kind::Jump(named("targetName").unwrap_or_else(empty)),
             "selectionDivergence" | "selectionConvergence" | "simultaneousDivergence" | "simultaneousConvergence" => {
                 Kind::Line
             }
@@ -73,7 +74,7 @@ fn condition<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Condition, Br
         };
         match tag.name {
             "reference" => {
-                found = Name::of(file, &tag, "name").map_or(Condition::Missing, Condition::Named);
+                found = name(file, &tag, "name").map_or(Condition::Missing, Condition::Named);
                 reader.skip()?;
             }
             "inline" => {
@@ -123,7 +124,7 @@ fn action<'t>(file: &'t str, reader: &mut Reader<'t>, tag: &Tag<'t>) -> Result<A
         };
         match inner.name {
             "reference" => {
-                does = Name::of(file, &inner, "name").map_or(Does::Missing, Does::Named);
+                does = name(file, &inner, "name").map_or(Does::Missing, Does::Named);
                 reader.skip()?;
             }
             "inline" => {

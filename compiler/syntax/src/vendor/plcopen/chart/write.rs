@@ -1,7 +1,7 @@
 //! A chart as text: each initial step, with its ACTIONs and transitions after it, and after these the steps that they enter.
 
 use super::super::super::assembly::{Trouble, text};
-use super::super::diagram::{Context, Diagram, Expression, Names, Refusal, Types, Wire, Writer};
+use super::super::super::diagram::{Context, Diagram, Expression, Names, Refusal, Types, Wire, Writer};
 use super::element::{Action, Chart, Condition, Does, Kind};
 use super::network::{Networks, StepAt, refuse};
 use super::{Chunk, Parts, Transition, Written};

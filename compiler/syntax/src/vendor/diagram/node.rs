@@ -1,8 +1,6 @@
 //! What a diagram is made of: its elements, in the order of the file, and what is wired to what.
 
-use super::super::super::assembly::Chunk;
-use super::super::super::assembly::text;
-use super::super::super::xml::Element;
+use super::super::assembly::{Chunk, text};
 use core::ops::Range;
 
 #[derive(Debug, Default)]
@@ -35,6 +33,8 @@ impl Diagram {
 pub struct Node {
     /// `localId`, by which wires name it.
     pub id: String,
+    /// What the names of variables for its results hold; the `localId`, too, where that is a number.
+    pub number: String,
     pub kind: Kind,
     pub place: Range<usize>,
     pub position: Position,
@@ -74,13 +74,6 @@ pub struct Name {
 }
 
 impl Name {
-    /// What an attribute says, if it says something.
-    pub fn of(file: &str, element: &Element<'_>, attribute: &str) -> Option<Self> {
-        let chunk = element.attribute_text(file, attribute)?;
-        let text = text(file, std::slice::from_ref(&chunk));
-        (!text.is_empty()).then_some(Self { text, chunk })
-    }
-
     /// One that is missing.
     pub fn empty(place: &Range<usize>) -> Self {
         Self { text: String::new(), chunk: Chunk::words("", place) }

@@ -1,7 +1,7 @@
 //! Where the editors' two orders of execution give different results.
 
-use super::super::super::assembly::Chunk;
-use super::super::super::assembly::text;
+use super::super::assembly::Chunk;
+use super::super::assembly::text;
 use super::node::{Diagram, Kind};
 use super::order::by_place;
 use core::ops::Range;

@@ -1,13 +1,10 @@
 //! What a project declares, as far as the types of wires need it: the variables of its POUs, what its functions return, and the
 //! members of its structures.
 
-use super::super::super::assembly::text;
-use super::super::super::xml::{Broken, Element, Part, Reader};
-use super::super::declaration::ty_within;
 use rustc_hash::FxHashMap;
 
 /// Variables, pins or members, by their names in capitals, with the types as they are written.
-type Typed = FxHashMap<String, String>;
+pub type Typed = FxHashMap<String, String>;
 
 #[derive(Debug, Default)]
 pub struct Declared {
@@ -17,10 +14,10 @@ pub struct Declared {
 }
 
 #[derive(Debug, Default)]
-struct Unit {
+pub struct Unit {
     /// Of a function.
-    result: Option<String>,
-    variables: Typed,
+    pub result: Option<String>,
+    pub variables: Typed,
 }
 
 /// The blocks that a program may use without declaring them, with their pins.
@@ -69,29 +66,13 @@ const fn counter(ty: &'static str) -> [(&'static str, &'static str); 9] {
 }
 
 impl Declared {
-    /// Reads the declarations of a whole file. XML that is not well-formed is reported when the file is read.
-    pub fn of(file: &str) -> Self {
-        let mut found = Self::default();
-        if let Some(mut reader) = Reader::new(file) {
-            let _ = found.read(file, &mut reader);
-        }
-        found
+    /// Adds a POU or a structure.
+    pub fn add(&mut self, name: &str, unit: Unit) {
+        self.units.insert(name.to_ascii_uppercase(), unit);
     }
 
-    fn read<'t>(&mut self, file: &'t str, reader: &mut Reader<'t>) -> Result<(), Broken> {
-        while let Some(part) = reader.part()? {
-            let Part::Open(element) = part else { continue };
-            let name = || element.attribute(file, "name").unwrap_or_default().to_ascii_uppercase();
-            match element.name {
-                "pou" | "dataType" => {
-                    let unit = unit(file, reader, element.name)?;
-                    self.units.insert(name(), unit);
-                }
-                "globalVars" => self.globals.extend(unit(file, reader, element.name)?.variables),
-                _ => {}
-            }
-        }
-        Ok(())
+    pub fn add_globals(&mut self, variables: Typed) {
+        self.globals.extend(variables);
     }
 
     /// The type of a function's result.
@@ -150,41 +131,4 @@ fn element_type(ty: &str, depth: usize) -> Option<&str> {
         let (_, of) = ty.split_once("] OF ").filter(|_| is_array)?;
         Some(of.trim())
     })
-}
-
-/// What a POU, a type or a list of variables declares, to its end.
-fn unit<'t>(file: &'t str, reader: &mut Reader<'t>, name: &str) -> Result<Unit, Broken> {
-    let mut found = Unit::default();
-    let mut open = 1_usize;
-    while open > 0 {
-        match reader.part()? {
-            Some(Part::Open(element)) => match element.name {
-                "returnType" => found.result = Some(text(file, &ty_within(file, reader)?)),
-                "variable" => variable(file, reader, &element, &mut found)?,
-                // Bodies, and what an action declares, are not the unit's.
-                "body" | "actions" | "transitions" if name == "pou" => reader.skip()?,
-                _ => open += 1,
-            },
-            Some(Part::Close) => open -= 1,
-            Some(Part::Text(_)) => {}
-            None => break,
-        }
-    }
-    Ok(found)
-}
-
-fn variable<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, unit: &mut Unit) -> Result<(), Broken> {
-    while let Some(part) = reader.part()? {
-        match part {
-            Part::Open(inner) if inner.name == "type" => {
-                let name = element.attribute(file, "name").unwrap_or_default();
-                let ty = text(file, &ty_within(file, reader)?);
-                unit.variables.insert(name.to_ascii_uppercase(), ty);
-            }
-            Part::Open(_) => reader.skip()?,
-            Part::Close => break,
-            Part::Text(_) => {}
-        }
-    }
-    Ok(())
 }

@@ -2,9 +2,9 @@
 //! was not executed yet. Results of functions are kept in variables, as they are where a wire comes back to what was executed
 //! before: it carries what the last scan left.
 
-use super::super::super::assembly::text;
-use super::super::super::assembly::{Chunk, Trouble};
-use super::super::super::unit::length_of_text;
+use super::super::assembly::text;
+use super::super::assembly::{Chunk, Trouble};
+use super::super::unit::length_of_text;
 use super::context::{Context, Names};
 use super::expression::{Expression, LONGEST};
 use super::functions::{has_pins_in_order, is_function};
@@ -115,7 +115,7 @@ impl<'w> Writer<'w> {
             return Err(refuse(node, Trouble::NotSupported, format!("{what} in a diagram is not supported")));
         }
         self.check_elements()?;
-        for at in in_order(self.diagram, self.context.is_codesys) {
+        for at in in_order(self.diagram, self.context.rules) {
             self.carried.clear();
             let start = self.written.statements.len();
             self.element(at)?;
@@ -140,7 +140,7 @@ impl<'w> Writer<'w> {
             }
             let written = node.expression().map(|it| text(self.file, it));
             match written.as_deref() {
-                Some("") if !self.context.is_codesys => {
+                Some("") if !self.context.is_codesys() => {
                     return Err(refuse(node, Trouble::Odd, "this element does not name a variable".to_owned()));
                 }
                 Some(written) if !is_one_expression(written) => {
@@ -340,7 +340,7 @@ impl<'w> Writer<'w> {
                 let own = self.modified(node, node.modifier, own);
                 (own, self.fed(at, asked)?)
             }
-            Kind::Coil(_) if self.context.is_codesys => alone(self.fed(at, asked)?),
+            Kind::Coil(_) if self.context.is_codesys() => alone(self.fed(at, asked)?),
             // The editors join the wires to a coil by AND where something is wired to its right.
             Kind::Coil(_) => {
                 let mut parts = Vec::new();
@@ -467,15 +467,15 @@ impl<'w> Writer<'w> {
 
     /// The variable that keeps an output of a function, or ENO of an instance. The numbers of an action's elements are its own.
     fn kept_in(&self, ty: &Name, instance: Option<&Name>, node: &Node, formal: &str) -> String {
-        let (ty, id) = (&ty.text, &node.id);
+        let (ty, number) = (&ty.text, &node.number);
         let action = match self.context.action {
             "" => String::new(),
             action => format!("{action}_"),
         };
         match (instance, formal) {
             (Some(instance), _) => format!("_TMP_{}_{formal}", instance.text),
-            (None, "") => format!("{action}{ty}{id}"),
-            (None, _) => format!("_TMP_{action}{ty}{id}_{formal}"),
+            (None, "") => format!("{action}{ty}{number}"),
+            (None, _) => format!("_TMP_{action}{ty}{number}_{formal}"),
         }
     }
 
@@ -500,7 +500,7 @@ impl<'w> Writer<'w> {
                 continue;
             };
             let value = self.modified(node, input.modifier, value);
-            match self.context.is_codesys && input.formal.eq_ignore_ascii_case("EN") {
+            match self.context.is_codesys() && input.formal.eq_ignore_ascii_case("EN") {
                 true => enable = Some(value),
                 false => arguments.push((input.formal.as_str(), value)),
             }
@@ -533,7 +533,7 @@ impl<'w> Writer<'w> {
         let connected = node.inputs.iter().all(|it| !it.wires.is_empty());
         // CODESYS numbers the inputs of its operators.
         let formals: Vec<&str> = node.inputs.iter().map(|it| it.formal.as_str()).filter(|it| own(it)).collect();
-        let by_name = !self.context.is_codesys
+        let by_name = !self.context.is_codesys()
             && (node.outputs.len() > 1 || !connected || !has_pins_in_order(&ty.text, &formals));
         let is_named = instance.is_some() || by_name || self.context.has_function(&ty.text);
         for (formal, value) in arguments {
@@ -548,7 +548,7 @@ impl<'w> Writer<'w> {
         let mut is_kept = true;
         for (output, pin) in node.outputs.iter().enumerate().filter(|_| instance.is_none()) {
             let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
-            if node.is_in_out(&pin.formal) || self.context.is_codesys && is_enable {
+            if node.is_in_out(&pin.formal) || self.context.is_codesys() && is_enable {
                 continue;
             }
             if pin.is_result(&ty.text) && !pin.target.is_empty() && !self.wired.contains(&(at, output)) {
@@ -564,7 +564,7 @@ impl<'w> Writer<'w> {
                 false => target = Some(vec![Chunk::words(name, &node.place)]),
             }
         }
-        if instance.is_some() && node.has_enable() && !self.context.is_codesys {
+        if instance.is_some() && node.has_enable() && !self.context.is_codesys() {
             // An instance that was never called has TRUE there.
             let name = self.kept_in(ty, instance.as_ref(), node, "ENO");
             parts.push(vec![Chunk::words(format!("ENO => {name}"), &node.place)]);

@@ -1,7 +1,7 @@
 //! The types of what wires carry: the result of a function is kept in a variable, which needs one. A type goes from what is declared
 //! along the wires, through functions of any type, in the order of the file, as Beremiz' editor has it go.
 
-use super::super::super::assembly::text;
+use super::super::assembly::text;
 use super::declared::Declared;
 use super::functions::{converted, is_of_times_too, of_times, signature};
 use super::node::{Diagram, Input, Kind, Node, Output, Wire};

@@ -1,21 +1,26 @@
 //! The order of execution.
 
+use super::context::Rules;
 use super::node::{Diagram, Kind, Node};
 use core::cmp::Ordering;
 
-/// What takes a value or is called, in order: first what has a number; then coils and variables, then blocks, then connectors, each as
-/// the file has them. So OpenPLC Editor does since it has been in Python 3, and Beremiz from April 2023 on. CODESYS has blocks
-/// among the others, in the order of its file.
-pub fn in_order(diagram: &Diagram, is_codesys: bool) -> Vec<usize> {
+/// What takes a value or is called, in order: first what has a number, then the others, connectors last.
+///
+/// Of Beremiz from April 2023 on, and of OpenPLC Editor in Python 3: coils and variables, then blocks, each as the file has them.
+/// Of OpenPLC Editor 4, whose `xml2st` was corrected in October 2025: all of them, connectors too, from top to bottom and from left to
+/// right. CODESYS has blocks among the others, in the order of its file.
+pub fn in_order(diagram: &Diagram, rules: Rules) -> Vec<usize> {
     let (mut order, others) = numbered(diagram);
-    if is_codesys {
-        order.extend(others.filter(|it| is_target(diagram, *it) || is_block(diagram, *it)));
-    } else {
-        order.extend(others.clone().filter(|it| is_target(diagram, *it)));
-        order.extend(others.filter(|it| is_block(diagram, *it)));
+    let connectors = others.clone().filter(|it| matches!(diagram.nodes[*it].kind, Kind::Connector(_)));
+    let targets = others.clone().filter(|it| is_target(diagram, *it));
+    let blocks = others.clone().filter(|it| is_block(diagram, *it));
+    match rules {
+        Rules::Beremiz => order.extend(targets.chain(blocks).chain(connectors)),
+        Rules::Editor4 => order.extend(sorted(diagram, targets.chain(blocks).chain(connectors))),
+        Rules::Codesys => {
+            order.extend(others.clone().filter(|it| is_target(diagram, *it) || is_block(diagram, *it)).chain(connectors));
+        }
     }
-    let is_connector = |at: &usize| matches!(diagram.nodes[*at].kind, Kind::Connector(_));
-    order.extend((0..diagram.nodes.len()).filter(is_connector));
     order
 }
 

@@ -1,7 +1,7 @@
 //! What a wire carries, as an expression. What several wires share is shared here, too.
 
-use super::super::super::assembly::Chunk;
-use super::super::super::assembly::text;
+use super::super::assembly::Chunk;
+use super::super::assembly::text;
 use core::ops::Range;
 use std::rc::Rc;
 

@@ -10,10 +10,24 @@ pub struct Context<'s> {
     pub pou: &'s str,
     /// The action, where the diagram is one's.
     pub action: &'s str,
-    pub is_codesys: bool,
+    pub rules: Rules,
+}
+
+/// How a diagram is executed, by the editor that drew it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rules {
+    /// Beremiz, and OpenPLC Editor before v4.
+    Beremiz,
+    /// OpenPLC Editor 4 and Autonomy Edge.
+    Editor4,
+    Codesys,
 }
 
 impl Context<'_> {
+    pub fn is_codesys(&self) -> bool {
+        self.rules == Rules::Codesys
+    }
+
     /// Whether the project declares a function with this name.
     pub fn has_function(&self, name: &str) -> bool {
         self.declared.result(name).is_some()

@@ -1,7 +1,8 @@
-//! The elements of LD and FBD, as the file holds them.
+//! The elements of LD and FBD, as PLCopen XML holds them.
 
-use super::super::super::xml::{Broken, Element, Part, Reader};
-use super::node::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
+use super::super::assembly::text;
+use super::super::diagram::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
+use super::super::xml::{Broken, Element, Part, Reader};
 
 /// The elements of a diagram that was opened, to its end.
 pub fn diagram<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Diagram, Broken> {
@@ -28,7 +29,7 @@ pub fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -
         "contact" => Kind::Contact(Vec::new()),
         "coil" => Kind::Coil(Vec::new()),
         "block" => {
-            let name = |attribute| Name::of(file, element, attribute);
+            let name = |attribute| name(file, element, attribute);
             let Some(ty) = name("typeName") else { return skipped(reader) };
             Kind::Block { ty, instance: name("instanceName") }
         }
@@ -43,6 +44,7 @@ pub fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -
     let order = element.attribute(file, "executionOrderId").and_then(|it| it.parse().ok()).unwrap_or(0);
     let mut node = Node {
         id: named("localId"),
+        number: named("localId"),
         kind,
         place: element.place.clone(),
         position: Position::default(),
@@ -53,6 +55,13 @@ pub fn node<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>) -
     };
     contents(file, reader, &mut node)?;
     Ok(Some(node))
+}
+
+/// What an attribute says, if it says something.
+pub fn name(file: &str, element: &Element<'_>, attribute: &str) -> Option<Name> {
+    let chunk = element.attribute_text(file, attribute)?;
+    let text = text(file, std::slice::from_ref(&chunk));
+    (!text.is_empty()).then_some(Name { text, chunk })
 }
 
 fn skipped(reader: &mut Reader<'_>) -> Result<Option<Node>, Broken> {
