@@ -10,7 +10,7 @@ use crate::dialect::Dialect;
 use crate::log::Log;
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, nearest};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 /// The time between scans, the controls of the actions, and which transitions fire.
 const CLOCK: &str = "__chart";
@@ -33,8 +33,10 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
         if !dialect.has_charts() {
             log.report(not_in(dialect, chart.span));
         }
-        if is_sound(&chart, pou, log) {
-            write_out(&chart, pou, dialect);
+        match is_sound(&chart, pou, log) {
+            true => write_out(&chart, pou, dialect),
+            // Its steps are not known to them.
+            false => pou.routines.retain(|it| it.kind != PouKind::Action),
         }
     }
 }
@@ -45,7 +47,7 @@ fn not_in(dialect: Dialect, at: Span) -> Diagnostic {
 }
 
 /// Reports what is wrong with a chart as a whole. Whether it can be written out, so that what is in it is checked, too.
-fn is_sound(chart: &Chart<'_>, pou: &Pou<'_>, log: &mut Log<'_>) -> bool {
+fn is_sound<'s>(chart: &Chart<'s>, pou: &Pou<'s>, log: &mut Log<'_>) -> bool {
     if let Some(statement) = pou.body.iter().find(|it| !matches!(it.kind, crate::ast::StatementKind::Empty)) {
         log.report(
             Diagnostic::new(Code::E0515, statement.span, "statements beside a sequential function chart")
@@ -73,16 +75,30 @@ fn is_sound(chart: &Chart<'_>, pou: &Pou<'_>, log: &mut Log<'_>) -> bool {
         );
         is_sound = false;
     }
-    let mut seen = FxHashSet::default();
-    for step in chart.steps.iter().filter(|it| !seen.insert(Key(it.name.text))) {
-        log.report(
-            Diagnostic::new(Code::E0103, step.name.span, format!("`{}` is declared twice", step.name.text))
-                .label("another step has this name")
-                .help("rename one of them"),
-        );
-        is_sound = false;
+    let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+    let routines = pou.routines.iter().map(|it| &it.name);
+    let mut declared: FxHashMap<_, _> = variables.chain(routines).map(|it| (Key(it.text), it.span)).collect();
+    for step in &chart.steps {
+        is_sound &= is_free(&mut declared, step.name, log);
+    }
+    let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+    let mut declared: FxHashMap<_, _> = variables.map(|it| (Key(it.text), it.span)).collect();
+    for routine in pou.routines.iter().filter(|it| it.kind == PouKind::Action) {
+        is_sound &= is_free(&mut declared, routine.name, log);
     }
     is_sound
+}
+
+/// Whether nothing else has a name, which is reported if something has.
+fn is_free<'s>(declared: &mut FxHashMap<Key<'s>, Span>, name: Name<'s>, log: &mut Log<'_>) -> bool {
+    let Some(first) = declared.insert(Key(name.text), name.span) else { return true };
+    log.report(
+        Diagnostic::new(Code::E0103, name.span, format!("`{}` is declared twice", name.text))
+            .label("declared again here")
+            .other(first, "first declared here")
+            .help("rename one of them: steps, ACTIONs and variables share their names"),
+    );
+    false
 }
 
 /// An action of a chart, and what controls it.

@@ -60,7 +60,7 @@ fn associate<'s>(step: Name<'s>, association: &Association<'s>, action: Action<'
     };
     let runs = |value| vec![tree::assign(target(), tree::truth(value, at))];
     let control = |variable, value: Expr<'s>| tree::assign(tree::control(action, variable, at), value);
-    let time = || association.time.clone().unwrap_or_else(|| tree::no_time(at));
+    let time = || association.time.clone().unwrap_or_else(|| tree::missing(at));
     let elapsed = |operator| tree::binary(active(), BinaryOp::And, tree::binary(of_step("T"), operator, time()));
     let last = match association.qualifier {
         Qualifier::While => {
@@ -82,7 +82,7 @@ fn associate<'s>(step: Name<'s>, association: &Association<'s>, action: Action<'
         Qualifier::SetDelayed => tree::when(entered(), vec![control("set_in", time())]),
         Qualifier::DelayedSet => {
             body.push(tree::when(entered(), vec![control("set_in", time())]));
-            tree::when(left(), vec![control("set_in", tree::no_time(at))])
+            tree::when(left(), vec![tree::call(tree::control(action, "__cancel", at), Vec::new())])
         }
     };
     body.push(last);

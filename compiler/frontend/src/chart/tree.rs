@@ -33,8 +33,9 @@ pub(super) fn truth<'s>(value: bool, span: Span) -> Expr<'s> {
     literal(LiteralValue::Bool(value), span)
 }
 
-pub(super) fn no_time<'s>(span: Span) -> Expr<'s> {
-    literal(LiteralValue::Time { ty: staunch_runtime::Elementary::Time, nanoseconds: 0 }, span)
+/// What is missing, as has been reported.
+pub(super) fn missing<'s>(span: Span) -> Expr<'s> {
+    Expr { kind: ExprKind::Error(Vec::new()), span }
 }
 
 fn number<'s>(value: usize, span: Span) -> Expr<'s> {

@@ -38,6 +38,9 @@ pub struct Written {
     pub groups: Vec<(usize, Range<usize>)>,
 }
 
+/// What a wire carries, after these statements.
+type Value = (Rc<Expression>, Vec<Chunk>);
+
 /// How a value is asked for.
 #[derive(Clone, Copy, Default)]
 struct Asked {
@@ -124,11 +127,16 @@ impl<'w> Writer<'w> {
         Ok(self.written)
     }
 
-    /// What wires carry that a condition is made of, with the statements that find it: nothing else of the diagram is executed.
-    pub fn values(mut self, wired: &[&'w [Wire]]) -> Of<(Vec<Option<Rc<Expression>>>, Written)> {
+    /// What wires carry that a condition is made of, each with the statements that find it: nothing else of the diagram is executed. With
+    /// the variables that these need.
+    pub fn values(mut self, wired: &[&'w [Wire]]) -> Of<(Vec<Value>, Vec<(String, String)>)> {
         self.check_elements()?;
-        let values = wired.iter().map(|it| self.value(it, Asked::default())).collect::<Of<_>>()?;
-        Ok((values, self.written))
+        let mut values = Vec::with_capacity(wired.len());
+        for wires in wired {
+            let value = self.value(wires, Asked::default())?.unwrap_or_else(Expression::always);
+            values.push((value, std::mem::take(&mut self.written.statements)));
+        }
+        Ok((values, self.written.variables))
     }
 
     /// What no editor draws: two elements with one number, a text that is not one expression, an instance in a block of another type.

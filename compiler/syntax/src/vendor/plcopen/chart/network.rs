@@ -21,6 +21,8 @@ pub struct Networks {
     /// The transitions after each step, and its action blocks.
     pub transitions: FxHashMap<StepAt, Vec<usize>>,
     pub actions: FxHashMap<StepAt, Vec<usize>>,
+    /// All transitions, in the order in which they are found.
+    pub found: Vec<usize>,
     pub from: FxHashMap<usize, Vec<StepAt>>,
     pub to: FxHashMap<usize, Vec<StepAt>>,
 }
@@ -47,6 +49,8 @@ impl Networks {
             match &element.kind {
                 Kind::Step { .. } => finder.step(at)?,
                 Kind::Transition { .. } => finder.transition(at)?,
+                // One that is drawn beside the chart does nothing.
+                Kind::Actions(_) if element.inputs.iter().all(Vec::is_empty) => {}
                 Kind::Actions(_) => {
                     let step = finder.step_of(element)?;
                     finder.step(step)?;
@@ -59,7 +63,11 @@ impl Networks {
                 }
             }
         }
-        Ok(finder.found)
+        let first = chart.elements.iter().find(|it| matches!(it.kind, Kind::Step { .. }));
+        match first.filter(|_| finder.found.initial.is_empty()) {
+            Some(first) => Err(odd(first, "no step is an initial step".to_owned())),
+            None => Ok(finder.found),
+        }
     }
 }
 
@@ -130,6 +138,7 @@ impl<'c> Finder<'c> {
         if !self.seen.insert(at) {
             return Ok(());
         }
+        self.found.found.push(at);
         let mut steps = Vec::new();
         for source in self.sources(&self.chart.elements[at])? {
             self.steps_before(source, &mut steps, 0)?;

@@ -1,13 +1,12 @@
 //! A chart as text: each initial step, with its ACTIONs and transitions after it, and after these the steps that they enter.
 
 use super::super::super::assembly::{Trouble, text};
-use super::super::super::diagram::{Context, Diagram, Expression, Names, Refusal, Types, Wire, Writer};
+use super::super::super::diagram::{Context, Diagram, Names, Refusal, Types, Wire, Writer};
 use super::element::{Action, Chart, Condition, Does, Kind};
 use super::network::{Networks, StepAt, refuse};
 use super::{Chunk, Parts, Transition, Written};
 use core::ops::Range;
 use rustc_hash::{FxHashMap, FxHashSet};
-use std::rc::Rc;
 
 /// The ACTION that runs the blocks that conditions are wired of.
 const BLOCKS: &str = "COMPUTE_FUNCTION_BLOCKS";
@@ -22,16 +21,23 @@ pub fn write(
     names: &mut Names,
     parts: Parts<'_>,
 ) -> Of<Written> {
-    let mut conditions = Conditions { file, context, statements: Vec::new(), variables: Vec::new(), values: FxHashMap::default() };
-    conditions.find(chart, parts.transitions, names)?;
-    let Conditions { statements, variables, values, .. } = conditions;
+    let mut conditions = Conditions {
+        file,
+        context,
+        statements: FxHashMap::default(),
+        variables: Vec::new(),
+        values: FxHashMap::default(),
+    };
+    conditions.find(chart, &networks.found, parts.transitions, names)?;
+    let Conditions { mut statements, variables, values, .. } = conditions;
+    let blocks = networks.found.iter().filter_map(|it| statements.remove(it)).flatten().collect();
     let mut text = Text {
         file,
         chart,
         networks,
         conditions: values,
         actions: parts.actions.into_iter().map(|(name, body)| (name.to_ascii_uppercase(), body)).collect(),
-        blocks: statements,
+        blocks,
         numbers: numbers(chart),
         seen: FxHashSet::default(),
         written: Vec::new(),
@@ -47,17 +53,24 @@ pub fn write(
 struct Conditions<'w> {
     file: &'w str,
     context: Context<'w>,
-    /// The calls of blocks that they are wired of.
-    statements: Vec<Chunk>,
+    /// The calls of blocks that each is wired of.
+    statements: FxHashMap<usize, Vec<Chunk>>,
     variables: Vec<(String, String)>,
     /// After the steps of each transition.
     values: FxHashMap<usize, Vec<Chunk>>,
 }
 
 impl Conditions<'_> {
-    fn find(&mut self, chart: &Chart, named: &FxHashMap<String, Transition>, names: &mut Names) -> Of<()> {
+    fn find(
+        &mut self,
+        chart: &Chart,
+        order: &[usize],
+        named: &FxHashMap<String, Transition>,
+        names: &mut Names,
+    ) -> Of<()> {
         let mut wired = Vec::new();
-        for (at, element) in chart.elements.iter().enumerate() {
+        for at in order.iter().copied() {
+            let element = &chart.elements[at];
             let Kind::Transition { condition, .. } = &element.kind else { continue };
             let value = match condition {
                 Condition::Missing => return Err(refuse(element, Trouble::Odd, "this transition has no condition".to_owned())),
@@ -66,6 +79,9 @@ impl Conditions<'_> {
                     return Err(refuse(element, Trouble::OtherLanguage, message));
                 }
                 Condition::Text(it) => self.assigned(it.clone(), &element.place),
+                Condition::Wired(wires) if wires.is_empty() => {
+                    return Err(refuse(element, Trouble::Odd, "nothing is wired to the condition of this transition".to_owned()));
+                }
                 Condition::Wired(wires) => {
                     wired.push((at, wires.as_slice(), element.place.clone()));
                     continue;
@@ -87,17 +103,14 @@ impl Conditions<'_> {
                                 format!("the diagram of the transition `{}` has no variable or coil with this name", name.text);
                             return Err(refuse(element, Trouble::Odd, message));
                         };
-                        let found = self.wired(diagram, &[(at, wires, element.place.clone())], names)?;
-                        self.values.extend(found);
+                        self.wired(diagram, &[(at, wires, element.place.clone())], names)?;
                         continue;
                     }
                 },
             };
             self.values.insert(at, value);
         }
-        let found = self.wired(&chart.diagram, &wired, names)?;
-        self.values.extend(found);
-        Ok(())
+        self.wired(&chart.diagram, &wired, names)
     }
 
     /// `:= condition;`
@@ -107,26 +120,22 @@ impl Conditions<'_> {
         closed(self.file, value, place)
     }
 
-    fn wired(
-        &mut self,
-        diagram: &Diagram,
-        wired: &[(usize, &[Wire], Range<usize>)],
-        names: &mut Names,
-    ) -> Of<Vec<(usize, Vec<Chunk>)>> {
+    /// Finds what wires to some transitions carry.
+    fn wired(&mut self, diagram: &Diagram, wired: &[(usize, &[Wire], Range<usize>)], names: &mut Names) -> Of<()> {
         if wired.is_empty() {
-            return Ok(Vec::new());
+            return Ok(());
         }
         let types = Types::of(self.file, diagram, self.context.declared, self.context.pou);
         let wires: Vec<_> = wired.iter().map(|it| it.1).collect();
-        let (values, mut written) = Writer::new(self.file, diagram, &types, self.context, names).values(&wires)?;
-        self.statements.append(&mut written.statements);
-        self.variables.append(&mut written.variables);
-        let value = |(value, (at, _, place)): (Option<Rc<Expression>>, &(usize, &[Wire], Range<usize>))| {
+        let (values, variables) = Writer::new(self.file, diagram, &types, self.context, names).values(&wires)?;
+        self.variables.extend(variables);
+        for ((value, statements), (at, _, place)) in values.into_iter().zip(wired) {
             let mut chunks = Vec::new();
-            value.unwrap_or_else(Expression::always).write(place, &mut chunks);
-            (*at, self.assigned(chunks, place))
-        };
-        Ok(values.into_iter().zip(wired).map(value).collect())
+            value.write(place, &mut chunks);
+            self.values.insert(*at, self.assigned(chunks, place));
+            self.statements.insert(*at, statements);
+        }
+        Ok(())
     }
 }
 
