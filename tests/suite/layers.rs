@@ -11,8 +11,8 @@ const SYNTAX_LAYERS: [&str; 8] = ["vendor", "source", "spelling", "diagnostic", 
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 20] = [
-    "allow", "declared", "testing", "mutate", "start", "tasks", "dialect", "options", "log", "locate", "prelude",
+const LAYERS: [&str; 21] = [
+    "allow", "declared", "testing", "mutate", "start", "tasks", "dialect", "options", "log", "locate", "chart", "prelude",
     "names", "inherit", "types", "expr", "declare", "body", "library", "program", "lints",
 ];
 

@@ -351,7 +351,8 @@ pub const UNITS: &[Unit] = units! {
     Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc Openplc4];
     Type     "SEMA"             "iec_sema"         [Iec Openplc Openplc4];
     Type     "__Chart"          "chart"            "__Step" "__Action";
-    Type     "__Step"           "chart_step";
+    Type     "__Step"           "openplc_chart_step" [Openplc];
+    Type     "__Step"           "chart_step"       [Iec Cscape Codesys Openplc4 Logix Siemens];
     Type     "__Action"         "openplc_chart_action" [Openplc];
     Type     "__Action"         "chart_action"     [Iec Cscape Codesys Openplc4 Logix Siemens];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];

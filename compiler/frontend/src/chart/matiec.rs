@@ -62,7 +62,12 @@ fn associate<'s>(step: Name<'s>, association: &Association<'s>, action: Action<'
     let control = |variable, value: Expr<'s>| tree::assign(tree::control(action, variable, at), value);
     let time = || association.time.clone().unwrap_or_else(|| tree::missing(at));
     let elapsed = |operator| tree::binary(active(), BinaryOp::And, tree::binary(of_step("T"), operator, time()));
-    let last = match association.qualifier {
+    let Some(qualifier) = association.qualifier else {
+        // It does nothing with a variable, and leaving the step does not end it.
+        body.extend((!action.is_variable).then(|| tree::when(active(), runs(true))));
+        return;
+    };
+    let last = match qualifier {
         Qualifier::While => {
             body.push(tree::when(active(), runs(true)));
             tree::when(left(), runs(false))

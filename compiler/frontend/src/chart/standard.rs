@@ -53,7 +53,7 @@ fn run<'s>(chart: &Chart<'s>, action: Action<'s>, body: &mut Vec<Statement<'s>>)
                 let of_action = tree::control(action, "T", association.span);
                 body.push(tree::when(active(), vec![tree::assign(of_action, time.clone())]));
             }
-            let input = input(association.qualifier);
+            let input = input(association.qualifier.unwrap_or(Qualifier::While));
             match inputs.iter_mut().find(|it| it.0 == input) {
                 Some((_, value)) => *value = tree::binary(value.clone(), BinaryOp::Or, active()),
                 None => inputs.push((input, active())),

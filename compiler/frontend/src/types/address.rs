@@ -104,11 +104,23 @@ pub(crate) fn parse(text: &str) -> Option<Address> {
     let numbers: Option<Vec<u32>> = numbers.split('.').map(|it| it.parse().ok()).collect();
     let (levels, bit) = match (width, numbers?.as_slice()) {
         (1, [byte]) => (Module::default(), u64::from(*byte) * 8),
+        // See `beyond`.
+        (1, [byte, bit]) => (Module::default(), u64::from(*byte) * 8 + u64::from(*bit)),
         (1, [levels @ .., byte, bit]) if *bit < 8 => (Module::new(levels)?, u64::from(*byte) * 8 + u64::from(*bit)),
         (2.., [levels @ .., at]) => (Module::new(levels)?, u64::from(*at) * u64::from(width)),
         _ => return None,
     };
     Some(Address { area, module: levels, bit, width })
+}
+
+/// Of `%QX0.16`, whose byte has no such bit, the address that it is in OpenPLC: `%QX2.0`.
+pub(crate) fn beyond(text: &str) -> Option<String> {
+    let (byte, bit) = text.split_once('.')?;
+    let bit: u32 = bit.parse().ok().filter(|it| *it >= 8)?;
+    let area = byte.trim_end_matches(|it: char| it.is_ascii_digit());
+    let byte: u32 = byte[area.len()..].parse().ok()?;
+    let is_bit = area.len() == 2 || area.ends_with(['X', 'x']);
+    is_bit.then(|| format!("{area}{}.{}", byte.saturating_add(bit / 8), bit % 8))
 }
 
 /// The name of a field: an address that has no other name is called by its letters and digits.

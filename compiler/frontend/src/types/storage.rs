@@ -3,6 +3,7 @@
 use super::address::{self, Storage};
 use super::declarations::Declarations;
 use super::table::{GLOBALS, scalar_initial};
+use crate::{Code, Diagnostic};
 use crate::ast;
 use staunch_ir::layout::Shape;
 use staunch_ir::{Address, Const, EnumId, Field, FieldId, Place, Root, Section, Struct, StructId, Type, Value};
@@ -226,8 +227,18 @@ impl<'s> Declarations<'s> {
     /// The address that is written; else reports what is wrong with it.
     pub fn address(&mut self, name: ast::Name<'s>) -> Option<Address> {
         let address = address::parse(name.text);
-        if address.is_none() {
+        let beyond = address::beyond(name.text);
+        if address.is_none() || beyond.is_some() && !self.dialect(name.span).has_bits_beyond_bytes() {
             self.report(address::wrong(name));
+            return None;
+        }
+        if let Some(meant) = beyond {
+            self.report(
+                Diagnostic::new(Code::W0414, name.span, format!("`{}` is `{meant}` in OpenPLC", name.text))
+                    .label("a byte has the bits 0 to 7")
+                    .help(format!("write `{meant}`, if this is what is meant"))
+                    .fix(name.span, &meant),
+            );
         }
         address
     }

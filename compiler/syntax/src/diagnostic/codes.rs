@@ -167,6 +167,7 @@ codes! {
     W0411 Warning "one address under two names";
     W0412 Warning "a task without a priority";
     W0413 Warning "an alias without an address";
+    W0414 Warning "an address beyond its byte";
     W0501 Warning "unused variable";
     W0502 Warning "unreachable statement";
     W0503 Warning "REAL compared for equality";

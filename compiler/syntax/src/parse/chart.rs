@@ -85,21 +85,22 @@ fn step<'s>(input: &mut In<'_, '_, 's>, steps: &mut Vec<Step<'s>>) -> Parsed<()>
 fn association<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Association<'s>> {
     let action = input.name()?;
     input.expect(Kind::OpenParen)?;
-    let mut qualifier = Qualifier::While;
+    let mut qualifier = None;
     let mut time = None;
     if input.kind() != Kind::CloseParen {
         let word = input.name()?;
-        match Qualifier::named(word.text) {
-            Some(it) => qualifier = it,
-            None => input.report(diagnostics::unknown_qualifier(word)),
+        let named = Qualifier::named(word.text);
+        if named.is_none() {
+            input.report(diagnostics::unknown_qualifier(word));
         }
-        if qualifier.is_timed() {
+        qualifier = Some(named.unwrap_or(Qualifier::While));
+        if named.is_some_and(Qualifier::is_timed) {
             if input.eat(Kind::Comma).is_none() {
                 input.report(diagnostics::qualifier_without_time(word));
             } else {
                 time = Some(expression(input)?);
             }
-        } else if input.kind() == Kind::Comma && Qualifier::named(word.text).is_some() && has_duration(input) {
+        } else if input.kind() == Kind::Comma && named.is_some() && has_duration(input) {
             let comma = input.take();
             let value = expression(input)?;
             input.report(diagnostics::qualifier_with_time(word, comma.to(value.span)));

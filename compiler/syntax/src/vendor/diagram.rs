@@ -15,7 +15,6 @@ use super::assembly::{Chunk, Says, Trouble};
 pub use context::{Context, Names, Rules};
 pub use declared::{Declared, Unit};
 use dispute::dispute;
-pub use expression::Expression;
 pub use functions::is_function;
 pub use node::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
 pub use types::Types;

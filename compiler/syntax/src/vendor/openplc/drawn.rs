@@ -10,7 +10,7 @@ use super::super::assembly::{Assembly, Chunk, Says};
 use super::super::diagram::{Context, Diagram, Names, Refusal, Rules, Written, write};
 use super::super::json::Value;
 use super::object::Object;
-pub use declared::{in_table, in_text};
+pub use declared::{Pou, in_table, in_text};
 use rustc_hash::FxHashSet;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,13 +28,6 @@ impl Language {
             _ => None,
         }
     }
-}
-
-/// The POU that a diagram is the body of.
-pub struct Pou<'t> {
-    pub name: &'t str,
-    /// The variables that it declares, with their types.
-    pub variables: Vec<(String, String)>,
 }
 
 /// The statements of a diagram, and the variables that they need.

@@ -20,6 +20,33 @@ const PINS: &str = r#"{"Uno": [{"pin": "1", "pinType": "digitalInput", "address"
 const BLOCK: &str =
     "(* ä *) // x\nFUNCTION F : STRING[5]\nVAR_INPUT (* END_VAR *)\n a : INT;\nEND_VAR\n#include <x.h>\n";
 
+/// A contact that feeds a timer and a coil, as the editor saves them.
+const LADDER: &str = r#"PROGRAM L
+VAR go : BOOL; end : BOOL AT %QX0.0; t : TON; END_VAR
+{"name": "L", "rungs": [{"id": "r", "reactFlowViewport": [9, 9.5], "nodes": [
+ {"id": "l", "type": "powerRail", "position": {"x": 0, "y": 1}, "data": {"variant": "left", "numericId": "1"}},
+ {"id": "c", "type": "contact", "data": {"variant": "negated", "numericId": "2", "variable": {"name": "go"}}},
+ {"id": "b", "type": "block", "data": {"numericId": "3", "variant": {"name": "TON", "type": "function-block", "variables": [
+   {"name": "Q", "class": "output", "type": {"definition": "base-type", "value": "BOOL"}}]}, "variable": {"name": "t"},
+  "inputConnector": {"id": "IN"}, "outputConnector": {"id": "Q"}, "inputHandles": [{"id": "IN"}], "outputHandles": [{"id": "Q"}]}},
+ {"id": "o", "type": "coil", "data": {"variant": "set", "numericId": "4", "variable": {"name": "end"}}}], "edges": [
+ {"source": "l", "target": "c"}, {"source": "c", "target": "b", "sourceHandle": "output", "targetHandle": "IN"},
+ {"source": "b", "target": "o", "sourceHandle": "Q", "targetHandle": "input"}]}]}
+END_PROGRAM
+"#;
+
+const FUNCTIONS: &str = r#"PROGRAM F
+VAR a, b : INT; END_VAR
+{"name": "F", "rung": {"nodes": [
+ {"id": "i", "type": "input-variable", "data": {"numericId": "1", "variable": {"name": "a"}}},
+ {"id": "f", "type": "block", "data": {"numericId": "2", "variant": {"name": "ADD", "type": "function", "variables": []},
+  "inputHandles": [{"id": "IN1"}, {"id": "IN2"}], "outputHandles": [{"id": "OUT"}]}},
+ {"id": "o", "type": "output-variable", "data": {"numericId": "3", "variable": {"name": "b"}}}], "edges": [
+ {"source": "i", "target": "f", "targetHandle": "IN1"}, {"source": "i", "target": "f", "targetHandle": "IN2"},
+ {"source": "f", "target": "o", "sourceHandle": "OUT"}]}}
+END_PROGRAM
+"#;
+
 /// Reads a text as a file, and looks up the place of each problem.
 fn problems(path: &str, text: &str) -> usize {
     let source = Source::decode(path, text.as_bytes());
@@ -48,6 +75,11 @@ fn damaged_files_are_read_or_refused() {
     assert!(count > 5_000, "{count}");
     let count: usize = damaged(PINS).map(|it| problems("devices/pin-mapping.json", &it)).sum();
     assert!(count > 500, "{count}");
+    for (path, text) in [("pous/programs/L.ld", LADDER), ("pous/programs/F.fbd", FUNCTIONS)] {
+        assert_eq!(problems(path, text), 0);
+        let count: usize = damaged(text).map(|it| problems(path, &it)).sum();
+        assert!(count > 1_000, "{path}: {count}");
+    }
     let count: usize = damaged(BLOCK).map(|it| problems("pous/functions/F.cpp", &it)).sum();
     assert!(count > 500, "{count}");
 }
@@ -91,4 +123,14 @@ fn names_and_comments_stay_what_they_are() {
     let text = read("project.json", &wild).unwrap().text;
     assert!(text.contains("(* * ) x : INT; ( * *)"), "{text}");
     assert_eq!(problems("project.json", &PROJECT.replace("\"name\": \"b\"", "\"name\": \"b : INT; c\"")), 1);
+}
+
+/// A diagram in a file of its own is read as statements, after what the POU declares.
+#[test]
+fn diagrams_are_statements() {
+    let text = |path: &str, text: &str| Source::decode(path, text.as_bytes()).text;
+    let ladder = text("pous/programs/L.ld", LADDER);
+    assert!(ladder.contains("END_VAR\nt(IN := NOT go);\nIF t.Q THEN\n    end := TRUE;\nEND_IF;\nEND_PROGRAM"), "{ladder}");
+    let functions = text("pous/programs/F.fbd", FUNCTIONS);
+    assert!(functions.contains("_TMP_ADD2_OUT : INT;") && functions.contains("b := _TMP_ADD2_OUT;"), "{functions}");
 }

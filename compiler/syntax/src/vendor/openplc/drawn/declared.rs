@@ -3,8 +3,14 @@
 use super::super::super::assembly::Assembly;
 use super::super::super::diagram::{Declared, Unit, is_function};
 use super::super::object::Object;
-use super::Pou;
 use super::element::{Element, elements};
+
+/// The POU that a diagram is the body of.
+pub struct Pou<'t> {
+    pub name: &'t str,
+    /// The variables that it declares, with their types.
+    pub variables: Vec<(String, String)>,
+}
 
 /// The declarations of the POU, and of the blocks that its diagram holds.
 pub fn of(body: &Object<'_>, pou: &Pou<'_>, out: &mut Assembly) -> Declared {
