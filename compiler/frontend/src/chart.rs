@@ -42,7 +42,11 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
 }
 
 fn not_in(dialect: Dialect, at: Span) -> Diagnostic {
-    let it = Diagnostic::new(Code::E0902, at, format!("a sequential function chart (SFC) is not supported in `{}`", dialect.name()));
+    let it = Diagnostic::new(
+        Code::E0902,
+        at,
+        format!("a sequential function chart (SFC) is not supported in `{}`", dialect.name()),
+    );
     it.label("charts are available in `iec` and `openplc`").help("write it as a CASE over its steps: `CASE step OF …`")
 }
 
@@ -59,7 +63,8 @@ fn is_sound<'s>(chart: &Chart<'s>, pou: &Pou<'s>, log: &mut Log<'_>) -> bool {
     let named = |name: &Name<'_>| chart.steps.iter().any(|it| Key(it.name.text) == Key(name.text));
     let mut is_sound = true;
     for name in chart.transitions.iter().flat_map(|it| it.from.iter().chain(&it.to)).filter(|it| !named(it)) {
-        let it = Diagnostic::new(Code::E0515, name.span, format!("there is no step `{}`", name.text)).label("not a step of this chart");
+        let it = Diagnostic::new(Code::E0515, name.span, format!("there is no step `{}`", name.text))
+            .label("not a step of this chart");
         log.report(match nearest(name.text, chart.steps.iter().map(|it| it.name.text)) {
             Some(meant) => it.help(format!("did you mean `{meant}`?")).fix(name.span, meant),
             None => it.help("declare it: `STEP Name: END_STEP`"),
@@ -152,7 +157,8 @@ fn write_out<'s>(chart: &Chart<'s>, pou: &mut Pou<'s>, dialect: Dialect) {
     if !chart.transitions.is_empty() {
         pou.blocks.push(fired(chart));
     }
-    let (routines, bodies): (Vec<_>, Vec<_>) = std::mem::take(&mut pou.routines).into_iter().partition(|it| it.kind != PouKind::Action);
+    let (routines, bodies): (Vec<_>, Vec<_>) =
+        std::mem::take(&mut pou.routines).into_iter().partition(|it| it.kind != PouKind::Action);
     pou.routines = routines;
     let mut body = vec![tree::call(tree::named(CLOCK, chart.span), Vec::new())];
     match dialect {

@@ -160,6 +160,11 @@ impl Dialect {
         matches!(self, Self::Iec | Self::Openplc)
     }
 
+    /// Every block has ENO as an output that is read, `inst.ENO`.
+    pub(crate) const fn has_enables_everywhere(self) -> bool {
+        matches!(self, Self::Openplc)
+    }
+
     /// `%QX0.16` is `%QX2.0`: the buffers of OpenPLC's runtime are rows of eight bits, one after the other (`glue_generator.cpp`, which
     /// prints that it is wrong).
     pub(crate) const fn has_bits_beyond_bytes(self) -> bool {

@@ -3,6 +3,7 @@
 
 mod chart;
 mod declared;
+mod enabled;
 mod testing;
 
 mod mutate;
@@ -230,6 +231,7 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     files.iter().for_each(|it| log.read_pragmas(it));
     files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
     chart::expand(&mut files, log);
+    enabled::expand(&mut files, log);
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.combined)).for_each(|it| report_combined(it, log));
     locate::resolve(&mut files, log);
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.nonretentive)).for_each(|it| note_nonretentive(it, log));

@@ -5,7 +5,9 @@ use crate::ast::{Association, BinaryOp, Chart, Expr, Name, Qualifier, Statement}
 
 pub(super) fn write<'s>(chart: &Chart<'s>, actions: &Actions<'s>, body: &mut Vec<Statement<'s>>) {
     let passed = |at| vec![tree::input("passed", tree::member(tree::named(super::CLOCK, at), "passed"))];
-    body.extend(chart.steps.iter().map(|it| tree::call(tree::member(tree::name(it.name), "__scan"), passed(it.name.span))));
+    body.extend(
+        chart.steps.iter().map(|it| tree::call(tree::member(tree::name(it.name), "__scan"), passed(it.name.span))),
+    );
     body.extend(actions.all.iter().map(|it| tree::call(tree::controls(*it, it.name.span), passed(it.name.span))));
     transitions(chart, body);
     for step in &chart.steps {
@@ -19,7 +21,9 @@ pub(super) fn write<'s>(chart: &Chart<'s>, actions: &Actions<'s>, body: &mut Vec
     }
     for action in actions.variables() {
         let at = action.name.span;
-        let branch = |asked, value| (tree::control(*action, asked, at), vec![tree::assign(tree::name(action.name), tree::truth(value, at))]);
+        let branch = |asked, value| {
+            (tree::control(*action, asked, at), vec![tree::assign(tree::name(action.name), tree::truth(value, at))])
+        };
         body.push(tree::either(vec![branch("reset", false), branch("set", true)], None));
     }
 }

@@ -3,8 +3,8 @@
 use super::{ACTIONS, Action, FIRED};
 use crate::Span;
 use crate::ast::{
-    Argument, ArgumentKind, BinaryOp, Bound, Expr, ExprKind, Initial, InitialKind, Literal, LiteralValue, Name, Statement,
-    StatementKind, TypeKind, TypeSpec, UnaryOp, VarDecl,
+    Argument, ArgumentKind, BinaryOp, Bound, Expr, ExprKind, Initial, InitialKind, Literal, LiteralValue, Name,
+    Statement, StatementKind, TypeKind, TypeSpec, UnaryOp, VarDecl,
 };
 
 /// Where something is, of which nothing is written there.
@@ -104,7 +104,10 @@ pub(super) fn when<'s>(condition: Expr<'s>, body: Vec<Statement<'s>>) -> Stateme
     either(vec![(condition, body)], None)
 }
 
-pub(super) fn either<'s>(branches: Vec<(Expr<'s>, Vec<Statement<'s>>)>, otherwise: Option<Vec<Statement<'s>>>) -> Statement<'s> {
+pub(super) fn either<'s>(
+    branches: Vec<(Expr<'s>, Vec<Statement<'s>>)>,
+    otherwise: Option<Vec<Statement<'s>>>,
+) -> Statement<'s> {
     let span = unwritten(branches.first().map_or(Span::default(), |it| it.0.span));
     Statement { kind: StatementKind::If { branches, otherwise }, span }
 }

@@ -3,8 +3,8 @@
 use super::address::{self, Storage};
 use super::declarations::Declarations;
 use super::table::{GLOBALS, scalar_initial};
-use crate::{Code, Diagnostic};
 use crate::ast;
+use crate::{Code, Diagnostic};
 use staunch_ir::layout::Shape;
 use staunch_ir::{Address, Const, EnumId, Field, FieldId, Place, Root, Section, Struct, StructId, Type, Value};
 

@@ -151,7 +151,9 @@ fn transition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Transition<'s>> {
     let to = steps(input)?;
     if input.kind() == Kind::Colon {
         let colon = input.here();
-        input.report(diagnostics::unsupported(colon, "a condition in Instruction List (IL)").help("write `:= condition;`"));
+        input.report(
+            diagnostics::unsupported(colon, "a condition in Instruction List (IL)").help("write `:= condition;`"),
+        );
         return Err(Problem::REPORTED);
     }
     input.expect(Kind::Assign)?;

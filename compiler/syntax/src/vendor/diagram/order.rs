@@ -18,7 +18,9 @@ pub fn in_order(diagram: &Diagram, rules: Rules) -> Vec<usize> {
         Rules::Beremiz => order.extend(targets.chain(blocks).chain(connectors)),
         Rules::Editor4 => order.extend(sorted(diagram, targets.chain(blocks).chain(connectors))),
         Rules::Codesys => {
-            order.extend(others.clone().filter(|it| is_target(diagram, *it) || is_block(diagram, *it)).chain(connectors));
+            order.extend(
+                others.clone().filter(|it| is_target(diagram, *it) || is_block(diagram, *it)).chain(connectors),
+            );
         }
     }
     order

@@ -130,7 +130,10 @@ fn names_and_comments_stay_what_they_are() {
 fn diagrams_are_statements() {
     let text = |path: &str, text: &str| Source::decode(path, text.as_bytes()).text;
     let ladder = text("pous/programs/L.ld", LADDER);
-    assert!(ladder.contains("END_VAR\nt(IN := NOT go);\nIF t.Q THEN\n    end := TRUE;\nEND_IF;\nEND_PROGRAM"), "{ladder}");
+    assert!(
+        ladder.contains("END_VAR\nt(IN := NOT go);\nIF t.Q THEN\n    end := TRUE;\nEND_IF;\nEND_PROGRAM"),
+        "{ladder}"
+    );
     let functions = text("pous/programs/F.fbd", FUNCTIONS);
     assert!(functions.contains("_TMP_ADD2_OUT : INT;") && functions.contains("b := _TMP_ADD2_OUT;"), "{functions}");
 }

@@ -7,9 +7,9 @@ mod parse;
 mod write;
 
 use super::super::assembly::Chunk;
+use super::super::diagram::{Context, Diagram, Names, Refusal};
 use super::super::unit::{Body, Unit, What};
 use super::super::xml::{Broken, Reader};
-use super::super::diagram::{Context, Diagram, Names, Refusal};
 use rustc_hash::FxHashMap;
 
 /// What a chart becomes.

@@ -136,7 +136,8 @@ impl<'t> Element<'t> {
         let named = |value: &Value| {
             let text = value.text(self.data.file);
             let is_plain = value.raw(self.data.file) == text;
-            let chunk = if is_plain { Chunk::verbatim(inner(value)) } else { Chunk::words(text.as_str(), &inner(value)) };
+            let chunk =
+                if is_plain { Chunk::verbatim(inner(value)) } else { Chunk::words(text.as_str(), &inner(value)) };
             Name { text, chunk }
         };
         let ty = named(variant.text("name", out)?);

@@ -23,12 +23,7 @@ pub fn read(body: &Object<'_>, diagram: &mut Diagram, out: &mut Assembly) {
     });
 }
 
-fn node<'t>(
-    element: &Element<'t>,
-    elements: &[Element<'t>],
-    lines: &[Line<'t>],
-    out: &mut Assembly,
-) -> Option<Node> {
+fn node<'t>(element: &Element<'t>, elements: &[Element<'t>], lines: &[Line<'t>], out: &mut Assembly) -> Option<Node> {
     let named = |out: &mut Assembly| text(element.data.file, &element.variable(out));
     let kind = match element.kind {
         "block" => element.block(out)?,

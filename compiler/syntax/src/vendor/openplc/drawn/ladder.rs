@@ -66,7 +66,11 @@ impl<'t> Rung<'t> {
             Kind::Block { .. } => {
                 let first = element.connector("inputConnector", out);
                 for pin in element.pins("inputHandles", out) {
-                    let wires = if Some(pin) == first { self.wires_to(element, out) } else { self.variable_at(element, pin, out) };
+                    let wires = if Some(pin) == first {
+                        self.wires_to(element, out)
+                    } else {
+                        self.variable_at(element, pin, out)
+                    };
                     node.inputs.extend((!wires.is_empty()).then(|| input(pin, wires)));
                 }
                 node.outputs = element.pins("outputHandles", out).into_iter().map(output).collect();
@@ -118,7 +122,12 @@ impl<'t> Rung<'t> {
                         end: None,
                         place: line.place.clone(),
                     }),
-                    None => wires.push(Wire { from: self.id(line.from), formal: None, end: None, place: line.place.clone() }),
+                    None => wires.push(Wire {
+                        from: self.id(line.from),
+                        formal: None,
+                        end: None,
+                        place: line.place.clone(),
+                    }),
                 }
             }
             waiting.extend(branches.into_iter().rev());

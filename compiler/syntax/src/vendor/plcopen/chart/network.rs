@@ -129,7 +129,10 @@ impl<'c> Finder<'c> {
     fn jump(&mut self, element: &'c Element) -> Of<()> {
         let Kind::Jump(name) = &element.kind else { return Ok(()) };
         let Some(step) = self.steps.get(&name.text.to_ascii_uppercase()).copied() else {
-            return Err(odd(element, format!("this jump is to the step `{}`, which the chart does not have", name.text)));
+            return Err(odd(
+                element,
+                format!("this jump is to the step `{}`, which the chart does not have", name.text),
+            ));
         };
         self.entered(element, step)
     }
@@ -162,7 +165,10 @@ impl<'c> Finder<'c> {
                 }
             }
             Kind::Step { name, .. } => {
-                return Err(odd(element, format!("no transition is between the step `{}` and the next one", name.text)));
+                return Err(odd(
+                    element,
+                    format!("no transition is between the step `{}` and the next one", name.text),
+                ));
             }
             Kind::Jump(_) | Kind::Actions(_) | Kind::Refused(_) => {}
         }

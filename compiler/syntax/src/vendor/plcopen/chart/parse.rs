@@ -1,7 +1,7 @@
 //! The elements of SFC, as the file holds them.
 
-use super::super::super::xml::{Broken, Element as Tag, Part, Reader};
 use super::super::super::diagram::{Name, Wire};
+use super::super::super::xml::{Broken, Element as Tag, Part, Reader};
 use super::super::drawn::{name, node, wires};
 use super::super::{language, text};
 use super::element::{Action, Chart, Condition, Does, Element, Kind};

@@ -73,14 +73,20 @@ impl Conditions<'_> {
             let element = &chart.elements[at];
             let Kind::Transition { condition, .. } = &element.kind else { continue };
             let value = match condition {
-                Condition::Missing => return Err(refuse(element, Trouble::Odd, "this transition has no condition".to_owned())),
+                Condition::Missing => {
+                    return Err(refuse(element, Trouble::Odd, "this transition has no condition".to_owned()));
+                }
                 Condition::Other(language) => {
                     let message = format!("the condition is {language}, not Structured Text");
                     return Err(refuse(element, Trouble::OtherLanguage, message));
                 }
                 Condition::Text(it) => self.assigned(it.clone(), &element.place),
                 Condition::Wired(wires) if wires.is_empty() => {
-                    return Err(refuse(element, Trouble::Odd, "nothing is wired to the condition of this transition".to_owned()));
+                    return Err(refuse(
+                        element,
+                        Trouble::Odd,
+                        "nothing is wired to the condition of this transition".to_owned(),
+                    ));
                 }
                 Condition::Wired(wires) => {
                     wired.push((at, wires.as_slice(), element.place.clone()));
@@ -91,7 +97,11 @@ impl Conditions<'_> {
                     None => self.assigned(vec![name.chunk.clone()], &element.place),
                     Some(Transition::Text(it)) => {
                         let is_assignment = text(self.file, it).starts_with(":=");
-                        if is_assignment { closed(self.file, it.clone(), &element.place) } else { self.assigned(it.clone(), &element.place) }
+                        if is_assignment {
+                            closed(self.file, it.clone(), &element.place)
+                        } else {
+                            self.assigned(it.clone(), &element.place)
+                        }
                     }
                     Some(Transition::Other(language)) => {
                         let message = format!("the transition `{}` is {language}, not Structured Text", name.text);
@@ -99,8 +109,10 @@ impl Conditions<'_> {
                     }
                     Some(Transition::Diagram(diagram)) => {
                         let Some(wires) = diagram.wires_to(self.file, &name.text) else {
-                            let message =
-                                format!("the diagram of the transition `{}` has no variable or coil with this name", name.text);
+                            let message = format!(
+                                "the diagram of the transition `{}` has no variable or coil with this name",
+                                name.text
+                            );
                             return Err(refuse(element, Trouble::Odd, message));
                         };
                         self.wired(diagram, &[(at, wires, element.place.clone())], names)?;
