@@ -2,6 +2,7 @@
 //! members of its structures.
 
 use rustc_hash::FxHashMap;
+use staunch_runtime::{BLOCKS, BlockInfo, Direction, Family};
 
 /// Variables, pins or members, by their names in capitals, with the types as they are written.
 pub type Typed = FxHashMap<String, String>;
@@ -20,49 +21,20 @@ pub struct Unit {
     pub variables: Typed,
 }
 
-/// The blocks that a program may use without declaring them, with their pins.
-const BLOCKS: [(&str, &[(&str, &str)]); 24] = [
-    ("TON", TIMER),
-    ("TOF", TIMER),
-    ("TP", TIMER),
-    ("R_TRIG", &[("CLK", "BOOL"), ("Q", "BOOL")]),
-    ("F_TRIG", &[("CLK", "BOOL"), ("Q", "BOOL")]),
-    ("SR", &[("S1", "BOOL"), ("R", "BOOL"), ("Q1", "BOOL")]),
-    ("RS", &[("S", "BOOL"), ("R1", "BOOL"), ("Q1", "BOOL")]),
+/// Blocks of the library that is in Structured Text, with their pins.
+const OF_LIBRARY: [(&str, &[(&str, &str)]); 2] = [
     ("SEMA", &[("CLAIM", "BOOL"), ("RELEASE", "BOOL"), ("BUSY", "BOOL")]),
-    ("CTU", &counter("INT")),
-    ("CTU_DINT", &counter("DINT")),
-    ("CTU_LINT", &counter("LINT")),
-    ("CTU_UDINT", &counter("UDINT")),
-    ("CTU_ULINT", &counter("ULINT")),
-    ("CTD", &counter("INT")),
-    ("CTD_DINT", &counter("DINT")),
-    ("CTD_LINT", &counter("LINT")),
-    ("CTD_UDINT", &counter("UDINT")),
-    ("CTD_ULINT", &counter("ULINT")),
-    ("CTUD", &counter("INT")),
-    ("CTUD_DINT", &counter("DINT")),
-    ("CTUD_LINT", &counter("LINT")),
-    ("CTUD_UDINT", &counter("UDINT")),
-    ("CTUD_ULINT", &counter("ULINT")),
     ("HYSTERESIS", &[("XIN1", "REAL"), ("XIN2", "REAL"), ("EPS", "REAL"), ("Q", "BOOL")]),
 ];
 
-const TIMER: &[(&str, &str)] = &[("IN", "BOOL"), ("PT", "TIME"), ("Q", "BOOL"), ("ET", "TIME")];
-
-/// The pins of all three kinds.
-const fn counter(ty: &'static str) -> [(&'static str, &'static str); 9] {
-    [
-        ("CU", "BOOL"),
-        ("CD", "BOOL"),
-        ("R", "BOOL"),
-        ("LD", "BOOL"),
-        ("PV", ty),
-        ("Q", "BOOL"),
-        ("QU", "BOOL"),
-        ("QD", "BOOL"),
-        ("CV", ty),
-    ]
+/// The type of a pin of a standard block.
+fn standard_pin(block: &str, pin: &str) -> Option<&'static str> {
+    let is_meant = |it: &&BlockInfo| it.family == Family::Iec && it.name.eq_ignore_ascii_case(block);
+    if let Some(block) = BLOCKS.iter().find(is_meant) {
+        return block.pin(pin).filter(|it| it.direction != Direction::Memory).map(|it| it.ty.name());
+    }
+    let (_, pins) = OF_LIBRARY.iter().find(|it| it.0.eq_ignore_ascii_case(block))?;
+    pins.iter().find(|it| it.0.eq_ignore_ascii_case(pin)).map(|it| it.1)
 }
 
 impl Declared {
@@ -86,8 +58,7 @@ impl Declared {
         if let Some(unit) = self.units.get(&ty) {
             return unit.variables.get(&name.to_ascii_uppercase()).map(String::as_str);
         }
-        let (_, pins) = BLOCKS.iter().find(|it| it.0 == ty)?;
-        pins.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
+        standard_pin(&ty, name)
     }
 
     /// The type of what an expression names in a POU, `motor.speeds[2].actual`.

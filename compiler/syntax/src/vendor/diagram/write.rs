@@ -2,13 +2,15 @@
 //! was not executed yet. Results of functions are kept in variables, as they are where a wire comes back to what was executed
 //! before: it carries what the last scan left.
 
+mod call;
+
 use super::super::assembly::text;
 use super::super::assembly::{Chunk, Trouble};
 use super::super::unit::length_of_text;
 use super::context::{Context, Names};
 use super::expression::{Expression, LONGEST};
-use super::functions::{has_pins_in_order, is_function};
-use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Output, Storage, Wire};
+use super::functions::is_function;
+use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Storage, Wire};
 use super::order::in_order;
 use super::types::Types;
 use core::ops::Range;
@@ -28,12 +30,14 @@ pub struct Refusal {
 
 type Of<T> = Result<T, Refusal>;
 
+/// Variables that a diagram needs, with their types.
+pub type Variables = Vec<(String, String)>;
+
 /// What a diagram becomes.
 #[derive(Debug, Default)]
 pub struct Written {
     pub statements: Vec<Chunk>,
-    /// Variables that it needs, with their types.
-    pub variables: Vec<(String, String)>,
+    pub variables: Variables,
     /// The elements in the order of execution, with the statements of each.
     pub groups: Vec<(usize, Range<usize>)>,
 }
@@ -129,7 +133,7 @@ impl<'w> Writer<'w> {
 
     /// What wires carry that a condition is made of, each with the statements that find it: nothing else of the diagram is executed. With
     /// the variables that these need.
-    pub fn values(mut self, wired: &[&'w [Wire]]) -> Of<(Vec<Value>, Vec<(String, String)>)> {
+    pub fn values(mut self, wired: &[&'w [Wire]]) -> Of<(Vec<Value>, Variables)> {
         self.check_elements()?;
         let mut values = Vec::with_capacity(wired.len());
         for wires in wired {
@@ -485,124 +489,6 @@ impl<'w> Writer<'w> {
             (None, "") => format!("{action}{ty}{number}"),
             (None, _) => format!("_TMP_{action}{ty}{number}_{formal}"),
         }
-    }
-
-    /// Writes the call of a block, once.
-    fn execute(&mut self, at: usize, asked: Asked) -> Of<()> {
-        let node = &self.diagram.nodes[at];
-        let Kind::Block { ty, instance } = &node.kind else { return Ok(()) };
-        if asked.ordered || !self.executed.insert(at) {
-            return Ok(());
-        }
-        // What comes back to it reads what the last scan left.
-        let outer = std::mem::take(&mut self.open);
-        let mut arguments = Vec::new();
-        let mut enable = None;
-        for input in &node.inputs {
-            let in_out = node.is_in_out(&input.formal);
-            let value = self.value(&input.wires, Asked { ordered: node.order > 0, in_out })?;
-            let Some(value) = value else {
-                if in_out {
-                    return Err(refuse(node, Trouble::Odd, format!("nothing is wired to `{}`", input.formal)));
-                }
-                continue;
-            };
-            let value = self.modified(node, input.modifier, value);
-            match self.context.is_codesys() && input.formal.eq_ignore_ascii_case("EN") {
-                true => enable = Some(value),
-                false => arguments.push((input.formal.as_str(), value)),
-            }
-        }
-        self.open = outer;
-        if let Some(enable) = enable {
-            let name = self.kept_in(ty, instance.as_ref(), node, "ENO");
-            self.written.variables.push((name.clone(), "BOOL".to_owned()));
-            self.assign(node, &[Chunk::words(name.as_str(), &node.place)], &enable);
-            self.words(&format!("IF {name} THEN\n    "), node);
-            self.call(at, arguments)?;
-            self.words("END_IF;\n", node);
-        } else {
-            self.call(at, arguments)?;
-        }
-        if instance.is_some() {
-            self.carried.clear();
-        }
-        Ok(())
-    }
-
-    fn call(&mut self, at: usize, arguments: Vec<(&str, Rc<Expression>)>) -> Of<()> {
-        let node = &self.diagram.nodes[at];
-        let Kind::Block { ty, instance } = &node.kind else { return Ok(()) };
-        let mut parts: Vec<Vec<Chunk>> = Vec::new();
-        let own = |it: &str| !it.eq_ignore_ascii_case("EN");
-        if instance.is_none() && !arguments.iter().any(|it| own(it.0)) && node.inputs.iter().any(|it| own(&it.formal)) {
-            return Err(refuse(node, Trouble::Odd, format!("nothing is wired to an input of `{}`", ty.text)));
-        }
-        let connected = node.inputs.iter().all(|it| !it.wires.is_empty());
-        // CODESYS numbers the inputs of its operators.
-        let formals: Vec<&str> = node.inputs.iter().map(|it| it.formal.as_str()).filter(|it| own(it)).collect();
-        let by_name = !self.context.is_codesys()
-            && (node.outputs.len() > 1 || !connected || !has_pins_in_order(&ty.text, &formals));
-        let is_named = instance.is_some() || by_name || self.context.has_function(&ty.text);
-        for (formal, value) in arguments {
-            let mut part = Vec::new();
-            if is_named && !formal.is_empty() {
-                part.push(Chunk::words(format!("{formal} := "), &node.place));
-            }
-            value.write(&node.place, &mut part);
-            parts.push(part);
-        }
-        let mut target: Option<Vec<Chunk>> = None;
-        let mut is_kept = true;
-        for (output, pin) in node.outputs.iter().enumerate().filter(|_| instance.is_none()) {
-            let is_enable = pin.formal.eq_ignore_ascii_case("ENO");
-            if node.is_in_out(&pin.formal) || self.context.is_codesys() && is_enable {
-                continue;
-            }
-            if pin.is_result(&ty.text) && !pin.target.is_empty() && !self.wired.contains(&(at, output)) {
-                target = Some(pin.target.clone());
-                is_kept = false;
-                continue;
-            }
-            let name = self.kept_in(ty, None, node, &pin.formal);
-            let of_type = self.type_of(at, output)?;
-            self.written.variables.push((name.clone(), of_type));
-            match node.outputs.len() > 1 && !pin.is_result(&ty.text) {
-                true => parts.push(vec![Chunk::words(format!("{} => {name}", pin.formal), &node.place)]),
-                false => target = Some(vec![Chunk::words(name, &node.place)]),
-            }
-        }
-        if instance.is_some() && node.has_enable() && !self.context.is_codesys() {
-            // An instance that was never called has TRUE there.
-            let name = self.kept_in(ty, instance.as_ref(), node, "ENO");
-            parts.push(vec![Chunk::words(format!("ENO => {name}"), &node.place)]);
-            self.written.variables.push((name, "BOOL := TRUE".to_owned()));
-        }
-        if let Some(target) = target {
-            self.written.statements.extend(target);
-            self.words(" := ", node);
-        }
-        let name = instance.as_ref().unwrap_or(ty);
-        self.written.statements.push(name.chunk.clone());
-        self.words("(", node);
-        for (at, part) in parts.into_iter().enumerate() {
-            if at > 0 {
-                self.words(", ", node);
-            }
-            self.written.statements.extend(part);
-        }
-        self.words(");\n", node);
-        let assigned = |it: &&Output| !it.target.is_empty() && (is_kept || !it.is_result(&ty.text));
-        for pin in node.outputs.iter().filter(assigned) {
-            let value = match instance {
-                Some(instance) => format!("{}.{}", instance.text, pin.formal),
-                None => self.kept_in(ty, None, node, &pin.formal),
-            };
-            let value = Expression::name(&value, &node.place);
-            let value = self.modified(node, pin.modifier, value);
-            self.assign(node, &pin.target, &value);
-        }
-        Ok(())
     }
 }
 
