@@ -5,12 +5,15 @@ mod matiec;
 mod standard;
 mod tree;
 
-use crate::ast::{Chart, File, Item, Name, Pou, PouKind, Statement, Transition, VarBlock, VarKind};
+use crate::ast::{
+    Chart, File, Item, Name, Pou, PouKind, Statement, StatementKind, Transition, TypeKind, VarBlock, VarKind,
+};
 use crate::dialect::Dialect;
 use crate::log::Log;
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, nearest};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
+use staunch_runtime::Elementary;
 
 /// The time between scans, the controls of the actions, and which transitions fire.
 const CLOCK: &str = "__chart";
@@ -24,21 +27,37 @@ pub(crate) fn is_hidden(name: &str) -> bool {
 
 /// Gives a body of statements to each POU that is a chart.
 pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
-    for pou in files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
-        Item::Pou(pou) => Some(pou),
-        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
-    }) {
-        let Some(chart) = pou.chart.take() else { continue };
+    let charts: FxHashSet<_> = pous(files).filter(|it| it.chart.is_some()).map(|it| Key(it.name.text)).collect();
+    for pou in pous(files) {
+        let Some(mut chart) = pou.chart.take() else { continue };
+        if let Some(base) = pou.extends.filter(|it| charts.contains(&Key(it.text))) {
+            log.report(
+                Diagnostic::new(Code::E0515, chart.span, format!("`{}` is a chart, and extends one", pou.name.text))
+                    .label("a second chart")
+                    .other(base.span, "this has a chart, too")
+                    .help("keep one of the two, and declare an instance of the other block"),
+            );
+            pou.routines.retain(|it| it.kind != PouKind::Action);
+            continue;
+        }
         let dialect = log.dialect(chart.span);
         if !dialect.has_charts() {
             log.report(not_in(dialect, chart.span));
         }
+        leave_out_numbers(&mut chart, pou, log);
         match is_sound(&chart, pou, log) {
             true => write_out(&chart, pou, dialect),
             // Its steps are not known to them.
             false => pou.routines.retain(|it| it.kind != PouKind::Action),
         }
     }
+}
+
+fn pous<'a, 's>(files: &'a mut [File<'s>]) -> impl Iterator<Item = &'a mut Pou<'s>> {
+    files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
+        Item::Pou(pou) => Some(pou),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    })
 }
 
 fn not_in(dialect: Dialect, at: Span) -> Diagnostic {
@@ -52,7 +71,8 @@ fn not_in(dialect: Dialect, at: Span) -> Diagnostic {
 
 /// Reports what is wrong with a chart as a whole. Whether it can be written out, so that what is in it is checked, too.
 fn is_sound<'s>(chart: &Chart<'s>, pou: &Pou<'s>, log: &mut Log<'_>) -> bool {
-    if let Some(statement) = pou.body.iter().find(|it| !matches!(it.kind, crate::ast::StatementKind::Empty)) {
+    let is_one = |it: &&Statement<'_>| !matches!(it.kind, StatementKind::Empty | StatementKind::Error);
+    if let Some(statement) = pou.body.iter().find(is_one) {
         log.report(
             Diagnostic::new(Code::E0515, statement.span, "statements beside a sequential function chart")
                 .label("no step runs this")
@@ -92,6 +112,35 @@ fn is_sound<'s>(chart: &Chart<'s>, pou: &Pou<'s>, log: &mut Log<'_>) -> bool {
         is_sound &= is_free(&mut declared, routine.name, log);
     }
     is_sound
+}
+
+/// Reports what steps name that is declared as something else than a BOOL, and takes it out.
+fn leave_out_numbers(chart: &mut Chart<'_>, pou: &Pou<'_>, log: &mut Log<'_>) {
+    let mut declared = FxHashMap::default();
+    for decl in pou.blocks.iter().flat_map(|it| &it.vars) {
+        if let TypeKind::Named(path) = &decl.ty.kind
+            && let [ty] = path.as_slice()
+            && Elementary::named(ty.text).is_some_and(|it| it != Elementary::Bool)
+        {
+            declared.extend(decl.names.iter().map(|it| (Key(it.text), *ty)));
+        }
+    }
+    for step in &mut chart.steps {
+        step.associations.retain(|it| {
+            let Some(ty) = declared.get(&Key(it.action.text)) else { return true };
+            log.report(
+                Diagnostic::new(
+                    Code::E0515,
+                    it.action.span,
+                    format!("`{}` is no action: it is {}", it.action.text, ty.text),
+                )
+                .label("expected an ACTION or a BOOL variable")
+                .other(ty.span, "declared here")
+                .help("write an ACTION that assigns to it"),
+            );
+            false
+        });
+    }
 }
 
 /// Whether nothing else has a name, which is reported if something has.
@@ -157,9 +206,6 @@ fn write_out<'s>(chart: &Chart<'s>, pou: &mut Pou<'s>, dialect: Dialect) {
     if !chart.transitions.is_empty() {
         pou.blocks.push(fired(chart));
     }
-    let (routines, bodies): (Vec<_>, Vec<_>) =
-        std::mem::take(&mut pou.routines).into_iter().partition(|it| it.kind != PouKind::Action);
-    pou.routines = routines;
     let mut body = vec![tree::call(tree::named(CLOCK, chart.span), Vec::new())];
     match dialect {
         Dialect::Openplc => matiec::write(chart, &actions, &mut body),
@@ -167,9 +213,23 @@ fn write_out<'s>(chart: &Chart<'s>, pou: &mut Pou<'s>, dialect: Dialect) {
             standard::write(chart, &actions, &mut body);
         }
     }
-    for action in bodies {
-        let Some(of) = actions.named(action.name) else { continue };
-        body.push(tree::when(tree::control(of, "Q", action.name.span), action.body));
+    let is_action = |it: &Pou<'s>| it.kind == PouKind::Action;
+    for routine in pou.routines.iter_mut().filter(|it| is_action(it)) {
+        let Some(action) = actions.named(routine.name) else { continue };
+        // A RETURN of MATIEC's leaves the chart.
+        let runs = match dialect {
+            Dialect::Openplc => std::mem::take(&mut routine.body),
+            Dialect::Iec
+            | Dialect::Cscape
+            | Dialect::Codesys
+            | Dialect::Openplc4
+            | Dialect::Logix
+            | Dialect::Siemens => vec![tree::call(tree::name(routine.name), Vec::new())],
+        };
+        body.push(tree::when(tree::control(action, "Q", routine.name.span), runs));
+    }
+    if dialect == Dialect::Openplc {
+        pou.routines.retain(|it| !is_action(it));
     }
     pou.body = body;
 }

@@ -350,7 +350,8 @@ pub const UNITS: &[Unit] = units! {
     Type     "RAMP"             "iec_ramp"         [Iec Openplc Openplc4];
     Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc Openplc4];
     Type     "SEMA"             "iec_sema"         [Iec Openplc Openplc4];
-    Type     "__Chart"          "chart"            "__Step" "__Action";
+    Type     "__Chart"          "openplc_chart"    [Openplc] "__Step" "__Action";
+    Type     "__Chart"          "chart"            [Iec Cscape Codesys Openplc4 Logix Siemens] "__Step" "__Action";
     Type     "__Step"           "openplc_chart_step" [Openplc];
     Type     "__Step"           "chart_step"       [Iec Cscape Codesys Openplc4 Logix Siemens];
     Type     "__Action"         "openplc_chart_action" [Openplc];

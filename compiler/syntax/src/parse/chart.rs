@@ -23,14 +23,30 @@ const END_TRANSITION: &str = "END_TRANSITION";
 /// Whether a step or a transition begins here.
 pub fn begins(input: &mut In<'_, '_, '_>) -> bool {
     let next = input.kind_ahead(1);
-    let is_step = (input.is_word(INITIAL) || input.is_word(STEP)) && next == Kind::Name;
-    is_step || input.is_word(TRANSITION) && (next == Kind::Name || next == Kind::OpenParen && has_priority(input))
+    let is_named = next == Kind::Name || next.keyword().is_some() && input.kind_ahead(2) == Kind::Colon;
+    (input.is_word(INITIAL) || input.is_word(STEP)) && is_named
+        || begins_in_two_words(input)
+        || input.is_word(TRANSITION)
+            && (matches!(next, Kind::Name | Kind::To) || next == Kind::OpenParen && has_priority(input))
 }
 
-/// Whether `TRANSITION (PRIORITY := 1) FROM` is here, and no call.
+/// Whether `TRANSITION (PRIORITY …` is here, and no call.
 fn has_priority(input: &mut In<'_, '_, '_>) -> bool {
-    let kinds = [2, 3, 4, 5, 6].map(|ahead| input.kind_ahead(ahead));
-    kinds == [Kind::Name, Kind::Assign, Kind::Integer, Kind::CloseParen, Kind::Name]
+    let ahead = if input.kind_ahead(1) == Kind::OpenParen { 2 } else { 1 };
+    is_word_ahead(input, ahead, "PRIORITY") || input.kind() == Kind::OpenParen && is_word_ahead(input, 1, "PRIORITY")
+}
+
+/// `INITIAL STEP`
+fn begins_in_two_words(input: &mut In<'_, '_, '_>) -> bool {
+    input.is_word("INITIAL") && is_word_ahead(input, 1, STEP)
+}
+
+fn is_word_ahead(input: &mut In<'_, '_, '_>, ahead: usize, word: &str) -> bool {
+    input.kind_ahead(ahead) == Kind::Name && {
+        let at = input.number() + ahead;
+        let place = input.state().place(at);
+        input.text(place).eq_ignore_ascii_case(word)
+    }
 }
 
 /// Takes a step or a transition that begins here into its POU.
@@ -60,8 +76,13 @@ pub fn element<'s>(input: &mut In<'_, '_, 's>, owner: &mut Pou<'s>) -> bool {
 
 /// What is read of a step is kept, so that it is known where something after it is wrong.
 fn step<'s>(input: &mut In<'_, '_, 's>, steps: &mut Vec<Step<'s>>) -> Parsed<()> {
-    let is_initial = input.is_word(INITIAL);
-    let opened = input.take();
+    let in_two_words = begins_in_two_words(input);
+    let is_initial = in_two_words || input.is_word(INITIAL);
+    let mut opened = input.take();
+    if in_two_words {
+        opened = opened.to(input.take());
+        input.report(diagnostics::initial_step_in_two_words(opened));
+    }
     let name = input.name()?;
     let at = steps.len();
     steps.push(Step { name, is_initial, associations: Vec::new() });
@@ -126,7 +147,8 @@ fn transition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Transition<'s>> {
     let span = input.take();
     // Its own name says nothing, and may be FROM.
     let next = input.kind_ahead(1);
-    if input.kind() == Kind::Name && (!input.is_word("FROM") || next == Kind::OpenParen && has_priority(input)) {
+    let is_name = !input.is_word("FROM") || next == Kind::OpenParen && has_priority(input);
+    if input.kind() == Kind::Name && is_name {
         input.take();
     }
     let mut priority = None;
@@ -134,10 +156,14 @@ fn transition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Transition<'s>> {
         if !input.is_word("PRIORITY") {
             return Err(input.problem(Expected::Name));
         }
-        input.take();
-        input.expect(Kind::Assign)?;
-        let number = input.expect(Kind::Integer)?;
-        priority = input.text(number).replace('_', "").parse().ok();
+        let word = input.take();
+        priority = priority_after(input);
+        if priority.is_none() {
+            input.report(diagnostics::wrong_priority(word));
+            while !matches!(input.kind(), Kind::CloseParen | Kind::Semicolon | Kind::End) {
+                input.take();
+            }
+        }
         input.expect(Kind::CloseParen)?;
     }
     if !input.is_word("FROM") {
@@ -171,6 +197,13 @@ fn transition<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Transition<'s>> {
         }
     }
     Ok(Transition { priority, from, to, condition, span })
+}
+
+/// `:= 1`
+fn priority_after(input: &mut In<'_, '_, '_>) -> Option<u64> {
+    input.eat(Kind::Assign)?;
+    let number = input.eat(Kind::Integer)?;
+    input.text(number).replace('_', "").parse().ok()
 }
 
 /// `a`, or `(a, b)`.
@@ -215,7 +248,11 @@ fn skip_element(input: &mut In<'_, '_, '_>, end: &str) {
 
 /// To the end of what a chart cannot be in.
 fn skip_chart(input: &mut In<'_, '_, '_>) {
-    while input.kind() != Kind::End && !opens_item(input.kind()) && !is_pou_end(input.kind()) {
+    let end = input.state().open.last().map(|it| it.0);
+    while !matches!(input.kind(), Kind::End) && !opens_item(input.kind()) && !is_pou_end(input.kind()) {
+        if Some(input.kind()) == end {
+            break;
+        }
         input.take();
     }
 }

@@ -18,7 +18,7 @@ use dispute::dispute;
 pub use functions::is_function;
 pub use node::{Diagram, Edge, Input, Kind, Modifier, Name, Node, Output, Position, Storage, Wire};
 pub use types::Types;
-pub use write::{Refusal, Writer, Written};
+pub use write::{Refusal, Writer, Written, is_one_expression};
 
 /// The statements of a diagram.
 pub fn write(file: &str, diagram: &Diagram, context: Context<'_>, names: &mut Names) -> Result<Written, Refusal> {

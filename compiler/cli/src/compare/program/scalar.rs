@@ -156,7 +156,9 @@ impl Walk<'_> {
             }
             let from_outside =
                 field.section == Section::Input || field.address.is_some_and(|it| it.area == staunch_ir::Area::Input);
-            let role = match (field.constant, from_outside) {
+            // What the compiler adds is nobody's variable.
+            let is_hidden = field.constant || field.name.starts_with("__");
+            let role = match (is_hidden, from_outside) {
                 (true, _) => Role::Hidden,
                 (false, true) => Role::Input,
                 (false, false) => Role::Variable,
@@ -186,6 +188,11 @@ impl Walk<'_> {
             }
             self.kept(&path, field.ty, &views, whole);
         }
+    }
+
+    /// For how long a step of a chart is active counts where something asks for it: in `openplc` it lacks a nanosecond at times.
+    fn is_time_of_a_step(&self, id: StructId, name: &str) -> bool {
+        self.program.structure(id).name == "__Step" && name == "T"
     }
 
     fn part(&mut self, path: &str, ty: Type, whole: Whole) {
@@ -236,7 +243,7 @@ impl Walk<'_> {
             // Of an instance, no one but itself writes what is neither input nor output.
             let is_inside = is_class && !matches!(field.section, Section::Input | Section::Output);
             let role = match whole.role {
-                _ if field.constant => Role::Hidden,
+                _ if field.constant || self.is_time_of_a_step(id, &field.name) => Role::Hidden,
                 Role::Input if is_inside => Role::Variable,
                 role => role,
             };

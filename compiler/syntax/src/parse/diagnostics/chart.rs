@@ -56,3 +56,18 @@ pub fn transition_without_steps(span: Span) -> Diagnostic {
         .label("expected FROM")
         .help("write the steps before and after it: `TRANSITION FROM a TO b := condition; END_TRANSITION`")
 }
+
+/// `INITIAL STEP Start:`
+pub fn initial_step_in_two_words(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0515, span, "INITIAL_STEP is one word")
+        .label("two words")
+        .help("write it with an underscore")
+        .fix(span, "INITIAL_STEP")
+}
+
+/// `(PRIORITY = 1)`
+pub fn wrong_priority(word: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0515, word, "a priority is a whole number, 0 or more")
+        .label("expected `:=` and a number after this")
+        .help("write `(PRIORITY := 1)`: the lowest number comes first")
+}

@@ -493,7 +493,7 @@ impl<'w> Writer<'w> {
 }
 
 /// Whether a text can be no more than one expression: it would be pasted among others.
-fn is_one_expression(written: &str) -> bool {
+pub fn is_one_expression(written: &str) -> bool {
     let mut depth = 0_usize;
     let mut rest = written;
     while let Some(first) = rest.chars().next() {

@@ -64,13 +64,15 @@ impl<'t> Rung<'t> {
         let mut node = Node { id: self.id(element.id), ..element.node(kind, below, out) };
         match &node.kind {
             Kind::Block { .. } => {
+                let pins = element.pins("inputHandles", out);
                 let first = element.connector("inputConnector", out);
-                for pin in element.pins("inputHandles", out) {
-                    let wires = if Some(pin) == first {
-                        self.wires_to(element, out)
-                    } else {
-                        self.variable_at(element, pin, out)
-                    };
+                for pin in &pins {
+                    // A wire that names none of the pins comes in on the rung.
+                    let is_here = |to: &str| to == *pin || Some(*pin) == first && !pins.contains(&to);
+                    let mut wires = self.wires_to(element, &is_here, out);
+                    if wires.is_empty() {
+                        wires = self.variable_at(element, pin, out);
+                    }
                     node.inputs.extend((!wires.is_empty()).then(|| input(pin, wires)));
                 }
                 node.outputs = element.pins("outputHandles", out).into_iter().map(output).collect();
@@ -85,7 +87,7 @@ impl<'t> Rung<'t> {
             | Kind::Connector(_)
             | Kind::Continuation(_)
             | Kind::Refused(_) => {
-                node.inputs.push(input("", self.wires_to(element, out)));
+                node.inputs.push(input("", self.wires_to(element, &|_| true, out)));
                 node.outputs.push(output(""));
             }
         }
@@ -100,13 +102,14 @@ impl<'t> Rung<'t> {
         self.elements.iter().find(|it| it.id == id)
     }
 
-    /// What comes in on the rung, through the branches before it.
-    fn wires_to(&self, element: &Element<'t>, out: &mut Assembly) -> Vec<Wire> {
+    /// What comes in at some pins, through the branches before it.
+    fn wires_to(&self, element: &Element<'t>, is_here: &dyn Fn(&str) -> bool, out: &mut Assembly) -> Vec<Wire> {
         let mut wires = Vec::new();
         let (mut seen, mut waiting) = (Vec::new(), vec![element.id]);
         while let Some(to) = waiting.pop() {
             let mut branches = Vec::new();
-            for line in self.lines.iter().filter(|it| it.to == to) {
+            let is_meant = |it: &&Line<'t>| it.to == to && (to != element.id || is_here(it.to_pin));
+            for line in self.lines.iter().filter(is_meant) {
                 match self.element(line.from) {
                     Some(from) if from.kind == BRANCH => {
                         if !seen.contains(&from.id) {
@@ -118,7 +121,7 @@ impl<'t> Rung<'t> {
                     Some(from) if from.kind == "variable" => {}
                     Some(from) => wires.push(Wire {
                         from: self.id(from.id),
-                        formal: from.connector("outputConnector", out).map(str::to_owned),
+                        formal: Self::output_of(from, line, out),
                         end: None,
                         place: line.place.clone(),
                     }),
@@ -133,6 +136,13 @@ impl<'t> Rung<'t> {
             waiting.extend(branches.into_iter().rev());
         }
         wires
+    }
+
+    /// The output that a wire comes from: the one that it names, else the one that the rung goes on from.
+    fn output_of(from: &Element<'t>, line: &Line<'t>, out: &mut Assembly) -> Option<String> {
+        let is_named = from.pins("outputHandles", out).contains(&line.from_pin);
+        let pin = if is_named { Some(line.from_pin) } else { from.connector("outputConnector", out) };
+        pin.map(str::to_owned)
     }
 
     /// The variable that is written at a pin of a block.

@@ -78,8 +78,11 @@ impl<'c> Finder<'c> {
                 return Err(odd(element, format!("another element has the localId `{}`, too", element.id)));
             }
             if let Kind::Step { name, .. } = &element.kind {
-                if name.text.is_empty() {
-                    return Err(odd(element, "this step has no name".to_owned()));
+                let is_name = name.text.chars().all(|it| it.is_alphanumeric() || it == '_');
+                match name.text.as_str() {
+                    "" => return Err(odd(element, "this step has no name".to_owned())),
+                    name if !is_name => return Err(odd(element, format!("`{name}` is not a name for a step"))),
+                    _ => {}
                 }
                 if self.steps.insert(name.text.to_ascii_uppercase(), at).is_some() {
                     return Err(odd(element, format!("another step has the name `{}`, too", name.text)));

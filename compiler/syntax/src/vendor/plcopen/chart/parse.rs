@@ -19,7 +19,7 @@ pub fn chart<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Chart, Broken
         let empty = || Name::empty(&tag.place);
         let kind = match tag.name {
             "step" => {
-                let is_initial = tag.attribute(file, "initialStep") == Some("true");
+                let is_initial = matches!(tag.attribute(file, "initialStep"), Some("true" | "1"));
                 Kind::Step { name: named("name").unwrap_or_else(empty), is_initial }
             }
             "macroStep" => Kind::Refused("a macro step"),

@@ -1,7 +1,8 @@
 //! A chart as text: each initial step, with its ACTIONs and transitions after it, and after these the steps that they enter.
 
 use super::super::super::assembly::{Trouble, text};
-use super::super::super::diagram::{Context, Diagram, Names, Refusal, Types, Wire, Writer};
+use super::super::super::diagram::{Context, Diagram, Names, Refusal, Types, Wire, Writer, is_one_expression};
+use super::super::super::unit::after_comment;
 use super::element::{Action, Chart, Condition, Does, Kind};
 use super::network::{Networks, StepAt, refuse};
 use super::{Chunk, Parts, Transition, Written};
@@ -120,9 +121,22 @@ impl Conditions<'_> {
                     }
                 },
             };
+            self.check_condition(&value, &element.place)?;
             self.values.insert(at, value);
         }
         self.wired(&chart.diagram, &wired, names)
+    }
+
+    /// A condition is one expression: it is written among others.
+    fn check_condition(&self, value: &[Chunk], place: &Range<usize>) -> Of<()> {
+        let written = without_comments(&text(self.file, value));
+        let condition = written.trim().trim_start_matches(":=").trim_end().trim_end_matches(';').trim();
+        let why = match condition {
+            "" => "the condition of this transition is empty".to_owned(),
+            _ if !is_one_expression(condition) => format!("`{condition}` is not a condition"),
+            _ => return Ok(()),
+        };
+        Err(Refusal { place: place.clone(), trouble: Trouble::Odd, message: why })
     }
 
     /// `:= condition;`
@@ -149,6 +163,16 @@ impl Conditions<'_> {
         }
         Ok(())
     }
+}
+
+fn without_comments(text: &str) -> String {
+    let mut kept = String::new();
+    let mut rest = text;
+    while let Some(at) = rest.find("(*") {
+        kept.push_str(&rest[..at]);
+        rest = after_comment(&rest[at + 2..]);
+    }
+    kept + rest
 }
 
 /// With a `;` at its end.
@@ -240,6 +264,14 @@ impl<'w> Text<'w> {
     /// `Fill(L, T#5s);`, and the ACTION where it is the first that names it.
     fn association(&mut self, action: &Action, inline: &str, after: &mut Vec<NamedText>) -> Of<()> {
         let place = &action.place;
+        let is_word = |it: &str| it.bytes().all(|it| it.is_ascii_alphanumeric());
+        let pasted = action.duration.iter().chain(&action.indicator).map(|it| it.said(self.file));
+        let wrong = (!is_word(&action.qualifier)).then(|| action.qualifier.clone());
+        let wrong = wrong.or_else(|| pasted.map(String::from).find(|it| !is_one_expression(it)));
+        if let Some(wrong) = wrong {
+            let message = format!("`{wrong}` is not a part of an action");
+            return Err(Refusal { place: place.clone(), trouble: Trouble::Odd, message });
+        }
         self.words("    ", place);
         match &action.does {
             Does::Missing => {
@@ -286,6 +318,9 @@ impl<'w> Text<'w> {
             return Err(refuse(element, Trouble::Odd, "no step is after this transition".to_owned()));
         }
         self.words("TRANSITION ", &element.place);
+        if let Some(priority) = priority.as_ref().filter(|it| !it.bytes().all(|it| it.is_ascii_digit())) {
+            return Err(refuse(element, Trouble::Odd, format!("the priority `{priority}` is not a whole number")));
+        }
         if let Some(priority) = priority {
             self.words(format!("(PRIORITY := {priority}) "), &element.place);
         }
