@@ -188,7 +188,7 @@ fn bodies_in_other_languages_are_refused_by_name() {
     let ladder = MAIN.replace("PROGRAM main", "(* lamps *)\n\nPROGRAM lamps");
     let (head, _) = ladder.split_once("  pulses(go").unwrap();
     let body = "{\n  \"name\": \"lamps\",\n  \"rungs\": [ { \"comment\": \"END_VAR\" } ]\n}\nEND_PROGRAM";
-    folder.write("pous/programs/lamps.ld", format!("{head}{body}"));
+    folder.write("pous/programs/lamps.sfc", format!("{head}{body}"));
     folder.write("pous/function-blocks/Native.cpp", "FUNCTION_BLOCK Native\nVAR_INPUT\n  id : INT := 3; // END_VAR\nEND_VAR\n#include <CAN.h>\nint x; (*\nEND_FUNCTION_BLOCK\n");
     folder.write(
         "pous/functions/Area.py",
@@ -199,8 +199,7 @@ fn bodies_in_other_languages_are_refused_by_name() {
     folder.write("pous/programs/main.st", MAIN.replace("mode := Filling;", "mode := Area(w := 2.0, h := 3.0);"));
     let found = folder.staunch("check . --message-format short").err(1);
     let expected = [
-        "pous/programs/lamps.ld:12:1: error[E0902]: the body of `lamps` is a ladder diagram (LD), not Structured Text",
-        "pous/function-blocks/Native.cpp:5:1: error[E0902]: the body of `Native` is C or C++, not Structured Text",
+        "pous/programs/lamps.sfc:12:1: error[E0902]: the body of `lamps` is a sequential function chart (SFC), not Structured Text",
         "pous/functions/Area.py:5:1: error[E0902]: the body of `Area` is Python, not Structured Text",
         "pous/functions/Empty.il:1:20: error[E0902]: the body of `Empty` is Instruction List (IL), not Structured Text",
         "pous/functions/Note.il:1:1: error",
@@ -208,6 +207,38 @@ fn bodies_in_other_languages_are_refused_by_name() {
         "pous/programs/main.st:13:",
     ];
     has(&found, &expected);
+    assert!(!found.contains("Native"), "nothing calls it: {found}");
+}
+
+/// A diagram is read, and what is in C++ is refused where it is called.
+#[test]
+fn diagrams_are_read_and_code_in_cpp_is_refused_where_it_is_called() {
+    let folder = project("openplc-diagrams");
+    let node = |id: &str, kind: &str, data: &str| {
+        format!(r#"{{ "id": "{id}", "type": "{kind}", "position": {{ "x": 0, "y": 0 }}, "data": {{ {data} }} }}"#)
+    };
+    let body = format!(
+        r#"{{ "name": "lamps", "rungs": [ {{ "nodes": [ {}, {}, {} ], "edges": [
+           {{ "source": "left", "target": "native" }}, {{ "source": "native", "sourceHandle": "done", "target": "lamp" }} ] }} ] }}"#,
+        node("left", "powerRail", r#""variant": "left""#),
+        node(
+            "native",
+            "block",
+            r#""numericId": "7", "variable": { "name": "native" }, "variant": { "name": "Native", "type": "function-block", "variables": [] },
+               "inputConnector": { "id": "go" }, "outputConnector": { "id": "done" },
+               "inputHandles": [ { "id": "go" } ], "outputHandles": [ { "id": "done" } ]"#,
+        ),
+        node("lamp", "coil", r#""variable": { "name": "lamp" }"#),
+    );
+    let head = "PROGRAM lamps\nVAR\n  native : Native;\n  lamp : BOOL;\nEND_VAR\n";
+    folder.write("pous/programs/lamps.ld", format!("{head}{body}\nEND_PROGRAM"));
+    let block = "FUNCTION_BLOCK Native\nVAR_INPUT\n  go : BOOL;\nEND_VAR\nVAR_OUTPUT\n  done : BOOL;\nEND_VAR\n";
+    folder.write("pous/function-blocks/Native.cpp", format!("{block}#include <CAN.h>\nEND_FUNCTION_BLOCK\n"));
+    let found = folder.staunch("check . --message-format short").err(1);
+    has(&found, &["pous/programs/lamps.ld:", "error[E0902]: `Native` has code in C"]);
+    std::fs::remove_file(folder.0.join("pous/function-blocks/Native.cpp")).unwrap();
+    folder.write("pous/function-blocks/Native.st", format!("{block}done := NOT go;\nEND_FUNCTION_BLOCK\n"));
+    folder.staunch("check .").err(0);
 }
 
 #[test]

@@ -40,7 +40,7 @@ fn transitions<'s>(chart: &Chart<'s>, body: &mut Vec<Statement<'s>>) {
         }
         let active = transition.from.iter().map(|it| tree::member(tree::name(*it), "X"));
         let Some(active) = tree::joined(active, BinaryOp::And) else { continue };
-        body.push(tree::when(active, vec![tree::when(transition.condition.clone(), fire)]));
+        body.push(tree::when(active, vec![tree::test(transition, fire)]));
     }
     for (at, transition) in chart.transitions.iter().enumerate().filter(|it| it.1.priority.is_none()) {
         body.push(tree::when(tree::fires(at, transition.span), moved(&transition.from, "__leave")));

@@ -33,7 +33,7 @@ fn transitions<'s>(chart: &Chart<'s>, body: &mut Vec<Statement<'s>>) {
         let Some(enabled) = tree::joined(active.chain(others), BinaryOp::And) else { continue };
         let fire = vec![tree::assign(tree::fires(*at, span), tree::truth(true, span))];
         body.push(tree::assign(tree::fires(*at, span), tree::truth(false, span)));
-        body.push(tree::when(enabled, vec![tree::when(transition.condition.clone(), fire)]));
+        body.push(tree::when(enabled, vec![tree::test(transition, fire)]));
     }
     for (at, transition) in chart.transitions.iter().enumerate() {
         body.push(tree::when(tree::fires(at, transition.span), moved(&transition.from, "__leave")));

@@ -4,7 +4,7 @@ use super::{ACTIONS, Action, FIRED};
 use crate::Span;
 use crate::ast::{
     Argument, ArgumentKind, BinaryOp, Bound, Expr, ExprKind, Initial, InitialKind, Literal, LiteralValue, Name,
-    Statement, StatementKind, TypeKind, TypeSpec, UnaryOp, VarDecl,
+    Statement, StatementKind, Transition, TypeKind, TypeSpec, UnaryOp, VarDecl,
 };
 
 /// Where something is, of which nothing is written there.
@@ -102,6 +102,11 @@ pub(super) fn assign<'s>(target: Expr<'s>, value: Expr<'s>) -> Statement<'s> {
 
 pub(super) fn when<'s>(condition: Expr<'s>, body: Vec<Statement<'s>>) -> Statement<'s> {
     either(vec![(condition, body)], None)
+}
+
+/// The test of a transition, which is written: coverage counts it.
+pub(super) fn test<'s>(transition: &Transition<'s>, fire: Vec<Statement<'s>>) -> Statement<'s> {
+    Statement { span: transition.span, ..when(transition.condition.clone(), fire) }
 }
 
 pub(super) fn either<'s>(

@@ -29,6 +29,8 @@ pub struct Outcome {
     /// And every state past the first difference.
     pub all_seen: bool,
     pub scans: u64,
+    /// The most scans that a search of such states makes, where that is less than was asked for.
+    pub limit: Option<u64>,
     /// States from which patterns were tried.
     pub places: usize,
     /// Values of inputs that were drawn by chance, besides those of the alphabet.

@@ -22,10 +22,12 @@ const SMALL: usize = 512;
 pub fn search(pair: &mut Pair, world: &World, budget: u64, wanted: usize) -> Outcome {
     // A large state takes its time to compare and to keep.
     let bytes = u64::try_from(pair.size().max(SMALL)).unwrap_or(u64::MAX);
-    let budget = budget.min((MAX_BYTES / bytes).max(1000));
+    let most = (MAX_BYTES / bytes).max(1000);
+    let limit = (budget > most).then_some(most);
+    let budget = budget.min(most);
     let mut search = Search::new(pair, world, budget, wanted);
     run(&mut search, budget);
-    let mut outcome = search.finish();
+    let mut outcome = Outcome { limit, ..search.finish() };
     let mut shortest = |it: Trace| shrink::shrink(pair, world, shrink::Goal::Differ, it);
     outcome.found = outcome.found.map(&mut shortest);
     let calm = outcome.without_event.take().map(&mut shortest);

@@ -184,7 +184,10 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     }
     let mut left = Vec::new();
     if !outcome.complete {
-        left.push("longer sequences; a larger --budget tries more of them".to_owned());
+        left.push(match outcome.limit {
+            None => "longer sequences; a larger --budget tries more of them".to_owned(),
+            Some(most) => format!("longer sequences: {most} scans are the most for states of this size"),
+        });
     }
     left.extend(turning(pair).filter(|_| !outcome.complete));
     for (choice, input) in alphabet.choices.iter().zip(&pair.inputs).filter(|it| it.0.covered.is_none()) {
