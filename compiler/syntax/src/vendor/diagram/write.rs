@@ -7,7 +7,7 @@ mod call;
 use super::super::assembly::text;
 use super::super::assembly::{Chunk, Trouble};
 use super::super::unit::length_of_text;
-use super::context::{Context, Names};
+use super::context::{Context, Names, Rules};
 use super::expression::{Expression, LONGEST};
 use super::functions::is_function;
 use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Storage, Wire};
@@ -352,7 +352,7 @@ impl<'w> Writer<'w> {
                 let own = self.modified(node, node.modifier, own);
                 (own, self.fed(at, asked)?)
             }
-            Kind::Coil(_) if self.context.is_codesys() => alone(self.fed(at, asked)?),
+            Kind::Coil(_) if self.context.rules != Rules::Beremiz => alone(self.fed(at, asked)?),
             // The editors join the wires to a coil by AND where something is wired to its right.
             Kind::Coil(_) => {
                 let mut parts = Vec::new();
