@@ -27,10 +27,18 @@ const OF_LIBRARY: [(&str, &[(&str, &str)]); 2] = [
     ("HYSTERESIS", &[("XIN1", "REAL"), ("XIN2", "REAL"), ("EPS", "REAL"), ("Q", "BOOL")]),
 ];
 
+/// Whether a name is that of a standard block, which has instances.
+pub fn is_standard_block(name: &str) -> bool {
+    standard_block(name).is_some()
+}
+
+fn standard_block(name: &str) -> Option<&'static BlockInfo> {
+    BLOCKS.iter().find(|it| it.family == Family::Iec && it.name.eq_ignore_ascii_case(name))
+}
+
 /// The type of a pin of a standard block.
 fn standard_pin(block: &str, pin: &str) -> Option<&'static str> {
-    let is_meant = |it: &&BlockInfo| it.family == Family::Iec && it.name.eq_ignore_ascii_case(block);
-    if let Some(block) = BLOCKS.iter().find(is_meant) {
+    if let Some(block) = standard_block(block) {
         return block.pin(pin).filter(|it| it.direction != Direction::Memory).map(|it| it.ty.name());
     }
     let (_, pins) = OF_LIBRARY.iter().find(|it| it.0.eq_ignore_ascii_case(block))?;

@@ -8,6 +8,7 @@ use super::super::assembly::text;
 use super::super::assembly::{Chunk, Trouble};
 use super::super::unit::length_of_text;
 use super::context::{Context, Names, Rules};
+use super::declared::is_standard_block;
 use super::expression::{Expression, LONGEST};
 use super::functions::is_function;
 use super::node::{Diagram, Edge, Kind, Modifier, Name, Node, Storage, Wire};
@@ -159,6 +160,12 @@ impl<'w> Writer<'w> {
                     return Err(refuse(node, Trouble::Odd, format!("`{written}` is not an expression")));
                 }
                 Some(_) | None => {}
+            }
+            if let Kind::Block { ty, instance: None } = &node.kind
+                && is_standard_block(&ty.text)
+                && !self.context.has_function(&ty.text)
+            {
+                return Err(refuse(node, Trouble::Odd, format!("this `{}` has no instance name", ty.text)));
             }
             if let Kind::Block { ty, instance: Some(instance) } = &node.kind
                 && let Some(declared) = self.context.declared.variable(self.context.pou, &instance.text)
