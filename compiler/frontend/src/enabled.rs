@@ -4,11 +4,12 @@
 
 use crate::Span;
 use crate::ast::{
-    Argument, ArgumentKind, Bound, Element, Expr, ExprKind, File, Initial, InitialKind, Item, Literal, LiteralValue,
-    Name, Pou, PouKind, Statement, StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind, each_expr,
+    Argument, ArgumentKind, Bound, Element, Expr, ExprKind, File, Initial, InitialKind, Item, LiteralValue, Name, Pou,
+    PouKind, Statement, StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind, each_expr,
 };
 use crate::log::Log;
 use crate::spelling::Key;
+use crate::testing::tree;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 const ENO: &str = "ENO";
@@ -94,21 +95,13 @@ fn instance_read<'s>(expr: &Expr<'s>) -> Option<Name<'s>> {
 /// `__enos : ARRAY[0..n] OF BOOL := [n(TRUE)];`
 fn kept<'s>(count: usize, at: Span) -> VarBlock<'s> {
     let element = TypeSpec { kind: TypeKind::Named(vec![Name { text: "BOOL", span: at }]), span: at };
-    let bounds = vec![Bound::Range(number(0, at), number(count - 1, at))];
+    let bounds = vec![Bound::Range(tree::number(0, at), tree::number(count - 1, at))];
     let ty = TypeSpec { kind: TypeKind::Array { bounds, element: Box::new(element) }, span: at };
-    let value = Initial { kind: InitialKind::Value(literal(LiteralValue::Bool(true), at)), span: at };
-    let elements = InitialKind::Elements(vec![Element { count: Some(number(count, at)), values: vec![value] }]);
+    let value = Initial { kind: InitialKind::Value(tree::literal(LiteralValue::Bool(true), at)), span: at };
+    let elements = InitialKind::Elements(vec![Element { count: Some(tree::number(count, at)), values: vec![value] }]);
     let initial = Some(Initial { kind: elements, span: at });
     let decl = VarDecl { initial, ..VarDecl::new(vec![Name { text: KEPT, span: at }], ty, at) };
     VarBlock { vars: vec![decl], ..VarBlock::new(VarKind::Var, at) }
-}
-
-fn literal<'s>(value: LiteralValue<'s>, span: Span) -> Expr<'s> {
-    Expr { kind: ExprKind::Literal(Literal { prefix: None, value }), span }
-}
-
-fn number<'s>(value: usize, span: Span) -> Expr<'s> {
-    literal(LiteralValue::Integer { value: u64::try_from(value).unwrap_or(u64::MAX), based: false }, span)
 }
 
 struct Rewriter<'s> {
@@ -118,7 +111,7 @@ struct Rewriter<'s> {
 impl<'s> Rewriter<'s> {
     fn kept(&self, number: usize, span: Span) -> Expr<'s> {
         let base = Expr { kind: ExprKind::Name(Name { text: KEPT, span }), span };
-        Expr { kind: ExprKind::Index(Box::new(base), vec![self::number(number, span)]), span }
+        Expr { kind: ExprKind::Index(Box::new(base), vec![tree::number(number, span)]), span }
     }
 
     fn list(&self, statements: &mut Vec<Statement<'s>>) {

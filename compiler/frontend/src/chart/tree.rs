@@ -3,9 +3,11 @@
 use super::{ACTIONS, Action, FIRED};
 use crate::Span;
 use crate::ast::{
-    Argument, ArgumentKind, BinaryOp, Bound, Expr, ExprKind, Initial, InitialKind, Literal, LiteralValue, Name,
-    Statement, StatementKind, Transition, TypeKind, TypeSpec, UnaryOp, VarDecl,
+    Argument, ArgumentKind, BinaryOp, Bound, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Statement,
+    StatementKind, Transition, TypeKind, TypeSpec, UnaryOp, VarDecl,
 };
+pub(super) use crate::testing::tree::named;
+use crate::testing::tree::{literal, number};
 
 /// Where something is, of which nothing is written there.
 fn unwritten(span: Span) -> Span {
@@ -16,17 +18,9 @@ pub(super) fn name(name: Name<'_>) -> Expr<'_> {
     Expr { kind: ExprKind::Name(name), span: name.span }
 }
 
-pub(super) fn named<'s>(text: &'static str, span: Span) -> Expr<'s> {
-    name(Name { text, span })
-}
-
 pub(super) fn member<'s>(of: Expr<'s>, text: &'static str) -> Expr<'s> {
     let span = unwritten(of.span);
     Expr { kind: ExprKind::Member(Box::new(of), Name { text, span }), span }
-}
-
-fn literal<'s>(value: LiteralValue<'s>, span: Span) -> Expr<'s> {
-    Expr { kind: ExprKind::Literal(Literal { prefix: None, value }), span }
 }
 
 pub(super) fn truth<'s>(value: bool, span: Span) -> Expr<'s> {
@@ -36,11 +30,6 @@ pub(super) fn truth<'s>(value: bool, span: Span) -> Expr<'s> {
 /// What is missing, as has been reported.
 pub(super) fn missing<'s>(span: Span) -> Expr<'s> {
     Expr { kind: ExprKind::Error(Vec::new()), span }
-}
-
-fn number<'s>(value: usize, span: Span) -> Expr<'s> {
-    let value = u64::try_from(value).unwrap_or(u64::MAX);
-    literal(LiteralValue::Integer { value, based: false }, span)
 }
 
 fn element<'s>(of: &'static str, at: usize, span: Span) -> Expr<'s> {

@@ -34,3 +34,8 @@ pub(crate) fn assign<'s>(name: &'static str, value: Expr<'s>) -> Statement<'s> {
     let span = value.span;
     Statement { kind: StatementKind::Assign { target: named(name, span), value }, span }
 }
+
+/// A whole number.
+pub(crate) fn number<'s>(value: usize, at: Span) -> Expr<'s> {
+    literal(LiteralValue::Integer { value: u64::try_from(value).unwrap_or(u64::MAX), based: false }, at)
+}
