@@ -23,8 +23,10 @@ pub(crate) fn is_hidden(name: &str) -> bool {
 
 /// Gives the POUs what they read of ENO.
 pub(crate) fn expand(files: &mut [File<'_>], log: &Log<'_>) {
+    let has_it = |file: u16| log.dialect(Span { file, start: 0, end: 0 }).has_enables_everywhere();
     let reads = |it: &crate::Source| it.text.contains(".ENO") || it.text.contains(".eno");
-    let reading: Vec<bool> = log.sources.files().iter().map(reads).collect();
+    let files_read = log.sources.files().iter().zip(0u16..);
+    let reading: Vec<bool> = files_read.map(|(it, number)| has_it(number) && reads(it)).collect();
     if !reading.contains(&true) {
         return;
     }

@@ -180,7 +180,11 @@ impl<'s> Checker<'_, 's> {
         {
             // What is evaluated for its effects, and may fault, is so.
             for value in [sides.a.typed_mut(), sides.b.typed_mut()].into_iter().flatten() {
-                self.save("compared", value);
+                match &mut value.kind {
+                    // Nothing is copied that holds an instance.
+                    ExprKind::Load(place) if self.decl.instance_in(value.ty).is_some() => self.fix(place),
+                    _ => self.save("compared", value),
+                }
             }
             return self.other_classes([expected, actual], span);
         }

@@ -20,14 +20,18 @@ const END_STEP: &str = "END_STEP";
 const TRANSITION: &str = "TRANSITION";
 const END_TRANSITION: &str = "END_TRANSITION";
 
-/// Whether a step or a transition begins here.
+/// Whether a step or a transition begins here. Statements rarely have a name or a keyword as their second word.
 pub fn begins(input: &mut In<'_, '_, '_>) -> bool {
-    let next = input.kind_ahead(1);
-    let is_named = next == Kind::Name || next.keyword().is_some() && input.kind_ahead(2) == Kind::Colon;
-    (input.is_word(INITIAL) || input.is_word(STEP)) && is_named
-        || begins_in_two_words(input)
-        || input.is_word(TRANSITION)
-            && (matches!(next, Kind::Name | Kind::To) || next == Kind::OpenParen && has_priority(input))
+    match input.kind_ahead(1) {
+        Kind::Assign | Kind::Dot | Kind::Semicolon | Kind::OpenBracket | Kind::Caret | Kind::Colon => false,
+        Kind::OpenParen => input.is_word(TRANSITION) && has_priority(input),
+        Kind::Name => [INITIAL, STEP, TRANSITION].iter().any(|it| input.is_word(it)) || begins_in_two_words(input),
+        Kind::To => input.is_word(TRANSITION),
+        next => {
+            let is_named = next.keyword().is_some() && input.kind_ahead(2) == Kind::Colon;
+            is_named && (input.is_word(INITIAL) || input.is_word(STEP))
+        }
+    }
 }
 
 /// Whether `TRANSITION (PRIORITY …` is here, and no call.
