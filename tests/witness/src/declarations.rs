@@ -121,6 +121,9 @@ impl<'a> Declarations<'a> {
         if pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("initialize_on_call")) {
             return unknown("inputs that start anew at each call");
         }
+        if pou.chart.is_some() {
+            return unknown("a sequential function chart");
+        }
         let (base, implements) = self.bases(pou)?;
         let after_init = pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("call_after_init"));
         if kind == PouKind::Interface {
