@@ -11,9 +11,10 @@ const SYNTAX_LAYERS: [&str; 8] = ["vendor", "source", "spelling", "diagnostic", 
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 22] = [
-    "allow", "declared", "testing", "mutate", "start", "tasks", "dialect", "options", "log", "locate", "chart",
-    "enabled", "prelude", "names", "inherit", "types", "expr", "declare", "body", "library", "program", "lints",
+const LAYERS: [&str; 23] = [
+    "added", "allow", "declared", "testing", "mutate", "start", "tasks", "dialect", "options", "log", "locate",
+    "chart", "enabled", "prelude", "names", "inherit", "types", "expr", "declare", "body", "library", "program",
+    "lints",
 ];
 
 /// The folder of the command line that is layers, and its folders from the lowest.

@@ -5,6 +5,7 @@ mod matiec;
 mod standard;
 mod tree;
 
+use crate::added::{ACTIONS, CLOCK, FIRED};
 use crate::ast::{
     Chart, File, Item, Name, Pou, PouKind, Statement, StatementKind, Transition, TypeKind, VarBlock, VarKind,
 };
@@ -15,15 +16,15 @@ use crate::{Code, Diagnostic, Span, nearest};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_runtime::Elementary;
 
-/// The time between scans, the controls of the actions, and which transitions fire.
-const CLOCK: &str = "__chart";
-const ACTIONS: &str = "__actions";
-const FIRED: &str = "__fired";
-
-/// Whether a name is one of those that are made here: no trace shows them.
-pub(crate) fn is_hidden(name: &str) -> bool {
-    [CLOCK, ACTIONS, FIRED].contains(&name)
+/// The blocks of the library that a chart is written out with.
+struct Blocks {
+    clock: &'static str,
+    step: &'static str,
+    action: &'static str,
 }
+
+const STANDARD: Blocks = Blocks { clock: "__Chart", step: "__Step", action: "__Action" };
+const MATIEC: Blocks = Blocks { clock: "__MatiecChart", step: "__MatiecStep", action: "__MatiecAction" };
 
 /// Gives a body of statements to each POU that is a chart.
 pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
@@ -201,49 +202,48 @@ impl<'s> Actions<'s> {
 }
 
 fn write_out<'s>(chart: &Chart<'s>, pou: &mut Pou<'s>, dialect: Dialect) {
+    let is_matiec = match dialect {
+        Dialect::Openplc => true,
+        Dialect::Iec | Dialect::Cscape | Dialect::Codesys | Dialect::Openplc4 | Dialect::Logix | Dialect::Siemens => {
+            false
+        }
+    };
     let actions = Actions::of(chart, pou);
-    pou.blocks.push(variables(chart, &actions));
+    pou.blocks.push(variables(chart, &actions, if is_matiec { &MATIEC } else { &STANDARD }));
     if !chart.transitions.is_empty() {
         pou.blocks.push(fired(chart));
     }
     let mut body = vec![tree::call(tree::named(CLOCK, chart.span), Vec::new())];
-    match dialect {
-        Dialect::Openplc => matiec::write(chart, &actions, &mut body),
-        Dialect::Iec | Dialect::Cscape | Dialect::Codesys | Dialect::Openplc4 | Dialect::Logix | Dialect::Siemens => {
-            standard::write(chart, &actions, &mut body);
-        }
+    match is_matiec {
+        true => matiec::write(chart, &actions, &mut body),
+        false => standard::write(chart, &actions, &mut body),
     }
     let is_action = |it: &Pou<'s>| it.kind == PouKind::Action;
     for routine in pou.routines.iter_mut().filter(|it| is_action(it)) {
         let Some(action) = actions.named(routine.name) else { continue };
         // A RETURN of MATIEC's leaves the chart.
-        let runs = match dialect {
-            Dialect::Openplc => std::mem::take(&mut routine.body),
-            Dialect::Iec
-            | Dialect::Cscape
-            | Dialect::Codesys
-            | Dialect::Openplc4
-            | Dialect::Logix
-            | Dialect::Siemens => vec![tree::call(tree::name(routine.name), Vec::new())],
+        let runs = match is_matiec {
+            true => std::mem::take(&mut routine.body),
+            false => vec![tree::call(tree::name(routine.name), Vec::new())],
         };
         body.push(tree::when(tree::control(action, "Q", routine.name.span), runs));
     }
-    if dialect == Dialect::Openplc {
+    if is_matiec {
         pou.routines.retain(|it| !is_action(it));
     }
     pou.body = body;
 }
 
 /// The steps, and what the chart needs besides.
-fn variables<'s>(chart: &Chart<'s>, actions: &Actions<'s>) -> VarBlock<'s> {
-    let mut vars = vec![tree::variable(Name { text: CLOCK, span: chart.span }, "__Chart")];
+fn variables<'s>(chart: &Chart<'s>, actions: &Actions<'s>, blocks: &Blocks) -> VarBlock<'s> {
+    let mut vars = vec![tree::variable(Name { text: CLOCK, span: chart.span }, blocks.clock)];
     for step in &chart.steps {
-        let mut variable = tree::variable(step.name, "__Step");
+        let mut variable = tree::variable(step.name, blocks.step);
         variable.initial = step.is_initial.then(|| tree::initially("X", step.name.span));
         vars.push(variable);
     }
     if !actions.all.is_empty() {
-        vars.push(tree::array(ACTIONS, actions.all.len(), "__Action", chart.span));
+        vars.push(tree::array(ACTIONS, actions.all.len(), blocks.action, chart.span));
     }
     VarBlock { vars, ..VarBlock::new(VarKind::Var, chart.span) }
 }
@@ -268,7 +268,17 @@ fn tested(transitions: &[Transition<'_>]) -> Vec<usize> {
     order
 }
 
-/// Leaves and enters the steps of what fires.
+/// The statements that leave the steps of the transitions that fire, and enter those behind them. Some have left theirs.
+fn fire<'s>(chart: &Chart<'s>, has_left: impl Fn(&Transition<'_>) -> bool, body: &mut Vec<Statement<'s>>) {
+    for (at, transition) in chart.transitions.iter().enumerate().filter(|it| !has_left(it.1)) {
+        body.push(tree::when(tree::fires(at, transition.span), moved(&transition.from, "__leave")));
+    }
+    for (at, transition) in chart.transitions.iter().enumerate() {
+        body.push(tree::when(tree::fires(at, transition.span), moved(&transition.to, "__enter")));
+    }
+}
+
+/// Leaves or enters steps.
 fn moved<'s>(steps: &[Name<'s>], method: &'static str) -> Vec<Statement<'s>> {
     steps.iter().map(|it| tree::call(tree::member(tree::name(*it), method), Vec::new())).collect()
 }

@@ -3,6 +3,7 @@
 //! write.
 
 use crate::Span;
+use crate::added::ENOS;
 use crate::ast::{
     Argument, ArgumentKind, Bound, Element, Expr, ExprKind, File, Initial, InitialKind, Item, LiteralValue, Name, Pou,
     PouKind, Statement, StatementKind, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind, each_expr,
@@ -13,13 +14,6 @@ use crate::testing::tree;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 const ENO: &str = "ENO";
-/// What the instances of a POU have, by their numbers.
-const KEPT: &str = "__enos";
-
-/// Whether a name is one of those that are made here: no trace shows them.
-pub(crate) fn is_hidden(name: &str) -> bool {
-    name == KEPT
-}
 
 /// Gives the POUs what they read of ENO.
 pub(crate) fn expand(files: &mut [File<'_>], log: &Log<'_>) {
@@ -102,7 +96,7 @@ fn kept<'s>(count: usize, at: Span) -> VarBlock<'s> {
     let value = Initial { kind: InitialKind::Value(tree::literal(LiteralValue::Bool(true), at)), span: at };
     let elements = InitialKind::Elements(vec![Element { count: Some(tree::number(count, at)), values: vec![value] }]);
     let initial = Some(Initial { kind: elements, span: at });
-    let decl = VarDecl { initial, ..VarDecl::new(vec![Name { text: KEPT, span: at }], ty, at) };
+    let decl = VarDecl { initial, ..VarDecl::new(vec![Name { text: ENOS, span: at }], ty, at) };
     VarBlock { vars: vec![decl], ..VarBlock::new(VarKind::Var, at) }
 }
 
@@ -112,7 +106,7 @@ struct Rewriter<'s> {
 
 impl<'s> Rewriter<'s> {
     fn kept(&self, number: usize, span: Span) -> Expr<'s> {
-        let base = Expr { kind: ExprKind::Name(Name { text: KEPT, span }), span };
+        let base = Expr { kind: ExprKind::Name(Name { text: ENOS, span }), span };
         Expr { kind: ExprKind::Index(Box::new(base), vec![tree::number(number, span)]), span }
     }
 

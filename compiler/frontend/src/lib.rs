@@ -1,6 +1,7 @@
 //! Structured Text in, typed intermediate representation out.
 #![forbid(unsafe_code)]
 
+mod added;
 mod chart;
 mod declared;
 mod enabled;

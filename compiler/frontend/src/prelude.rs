@@ -90,8 +90,9 @@ const ANY: &str = "__SYSTEM";
 /// The list of global variables of TwinCAT's libraries.
 pub(crate) const LIST: &str = "Global_Variables";
 
-/// What begins a sequential function chart, and the unit that one needs.
-const CHART: (&str, &str) = ("INITIAL_STEP", "__Chart");
+/// What begins a sequential function chart, and the units that one may need: one of them is of the dialect.
+const INITIAL_STEP: &str = "INITIAL_STEP";
+const CHARTS: [&str; 2] = ["__Chart", "__MatiecChart"];
 
 const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
 
@@ -350,12 +351,12 @@ pub const UNITS: &[Unit] = units! {
     Type     "RAMP"             "iec_ramp"         [Iec Openplc Openplc4];
     Type     "HYSTERESIS"       "iec_hysteresis"   [Iec Openplc Openplc4];
     Type     "SEMA"             "iec_sema"         [Iec Openplc Openplc4];
-    Type     "__Chart"          "openplc_chart"    [Openplc] "__Step" "__Action";
     Type     "__Chart"          "chart"            [Iec Cscape Codesys Openplc4 Logix Siemens] "__Step" "__Action";
-    Type     "__Step"           "openplc_chart_step" [Openplc];
     Type     "__Step"           "chart_step"       [Iec Cscape Codesys Openplc4 Logix Siemens];
-    Type     "__Action"         "openplc_chart_action" [Openplc];
     Type     "__Action"         "chart_action"     [Iec Cscape Codesys Openplc4 Logix Siemens];
+    Type     "__MatiecChart"    "matiec_chart"     [Openplc] "__MatiecStep" "__MatiecAction";
+    Type     "__MatiecStep"     "matiec_chart_step" [Openplc];
+    Type     "__MatiecAction"   "matiec_chart_action" [Openplc];
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "RESET_TIMER"      "reset_timer"      [Siemens] "IEC_TIMER";
     Type     "IEC_COUNTER"      (counter!(IEC_COUNTER, INT))       [Siemens];
@@ -424,7 +425,7 @@ static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| 
 
 /// What asks for a unit by another name than its own.
 static ASKING: LazyLock<FxHashSet<Key<'static>>> = LazyLock::new(|| {
-    [SYSTEM, CHART.0].into_iter().chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
+    [SYSTEM, INITIAL_STEP].into_iter().chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
 });
 
 /// The lengths of these and of units' names, by their first letters: most words of a program are
@@ -598,8 +599,10 @@ impl Uses {
             types.spaces += u32::from(word(at).eq_ignore_ascii_case("NAMESPACE"));
             self.uses_spaces |= word(at).eq_ignore_ascii_case("USING");
             let hands_on_any = dialect == Dialect::Codesys && heads.hand_on_any(word(at), before);
-            let begins_chart = word(at).eq_ignore_ascii_case(CHART.0) && tokens.kinds.get(at + 1) == Some(&Kind::Name);
-            for name in [(hands_on_any, ANY), (begins_chart, CHART.1)].into_iter().filter(|it| it.0).map(|it| it.1) {
+            let begins_chart =
+                word(at).eq_ignore_ascii_case(INITIAL_STEP) && tokens.kinds.get(at + 1) == Some(&Kind::Name);
+            let any = hands_on_any.then_some(ANY);
+            for name in any.into_iter().chain(CHARTS.into_iter().filter(|_| begins_chart)) {
                 self.named.extend(unit(name, dialect).map(|unit| Named {
                     unit,
                     at: Span { file, start, end },

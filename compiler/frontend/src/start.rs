@@ -9,6 +9,7 @@ mod expected;
 mod varying;
 
 use crate::Span;
+use crate::added::{KEPT, RETAINS, STARTED};
 use crate::ast::{
     Expr, ExprKind, File, Item, LiteralValue, Name, Pou, PouKind, Statement, StatementKind, UnaryOp, VarBlock, VarKind,
     each_expr,
@@ -36,18 +37,7 @@ pub(crate) const GLOBALS: &str = "__start_globals";
 pub(crate) const MEMBERS: &str = "__start_members";
 /// Marks one of a class that assigns initial values.
 pub(crate) const ADDRESSES: &str = "__addresses";
-/// TRUE when that has been done since the last start.
-pub(crate) const STARTED: [&str; 2] = ["__started", "__globals_started"];
-/// The same of what is RETAIN, in a variable that is RETAIN.
-pub(crate) const KEPT: [&str; 2] = ["__kept", "__globals_kept"];
-/// What `bInitRetains` is, where something asks for it.
-pub(crate) const RETAINS: &str = "__init_retains";
 const ASKED: &str = "bInitRetains";
-
-/// Whether a name is one of those that are made here: no trace shows them.
-pub(crate) fn is_hidden(name: &str) -> bool {
-    STARTED.contains(&name) || KEPT.contains(&name) || addresses::ADDRESSED.contains(&name) || name == RETAINS
-}
 
 pub(crate) fn is_initial(name: Name<'_>) -> bool {
     Key(name.text) == Key(INIT)

@@ -64,10 +64,6 @@ impl<'p> Startup<'p> {
         if self.is_retentive(field.ty) {
             return Fate::Whole;
         }
-        // An address is not data that outlives the program.
-        if self.is_reference(field.ty) {
-            return Fate::Anew;
-        }
         let system = self.program.files[usize::from(field.location.file)].system;
         let keeps = match event {
             // No system starts more variables anew in a warm reset than in a power cycle.
@@ -76,6 +72,8 @@ impl<'p> Startup<'p> {
         };
         match (keeps, field.retain) {
             (Keeps::Everything, _) if self.of_variables.contains(&owner) => Fate::Whole,
+            // An address is not data that outlives the program.
+            _ if self.is_reference(field.ty) => Fate::Anew,
             (_, Retain::Inherited) => Fate::Inherited,
             (_, Retain::Kept) => Fate::Kept,
             (_, Retain::Anew) => Fate::Anew,

@@ -42,6 +42,8 @@ pub enum Part {
     FractionBesideReal,
     /// A shift by a negative number, or by as many bits as C shifts in, or more.
     ShiftPastWidth,
+    /// SHL or SHR of a number without a type.
+    ShiftOfConstant,
     /// A result beyond a signed type of 32 or 64 bits, where that decides something.
     Overflow,
     /// A result beyond a signed type of 32 or 64 bits, wherever it goes.
@@ -51,7 +53,7 @@ pub enum Part {
 }
 
 impl Part {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -62,6 +64,7 @@ impl Part {
         Self::PartsOfMillisecond,
         Self::FractionBesideReal,
         Self::ShiftPastWidth,
+        Self::ShiftOfConstant,
         Self::Overflow,
         Self::StoredOverflow,
         Self::Index,
@@ -80,6 +83,7 @@ impl Part {
             Self::PartsOfMillisecond => "a timer, where the time between scans is not a whole number of milliseconds",
             Self::FractionBesideReal => "a number with a fraction in an operation with a REAL",
             Self::ShiftPastWidth => "a shift past the width",
+            Self::ShiftOfConstant => "a shift of a number without a type",
             Self::Overflow => "signed overflow",
             Self::StoredOverflow => "a DINT or LINT that passes its range",
             Self::Index => "an index outside of its array",

@@ -6,6 +6,9 @@ use crate::calendar::Day;
 /// LTOD; since 1970-01-01, of a DT or LDT; and of a DATE or LDATE, which is the midnight it starts at.
 pub type Time = i64;
 
+/// Nanoseconds in a microsecond.
+pub const MICROSECOND: Time = 1_000;
+
 /// Nanoseconds in a millisecond: the unit in which IEC conversions between TIME and numbers count.
 pub const MILLISECOND: Time = 1_000_000;
 

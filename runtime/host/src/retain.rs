@@ -289,7 +289,12 @@ fn type_text(map: &Map, ty: Type, range: Option<(i128, i128)>) -> String {
                 pins.iter().map(|it| format!("{}:{}", it.name, type_text(map, it.ty, it.range))).collect();
             format!("{name}({})", pins.join(","))
         }
-        Type::Bit(_) | Type::Reference | Type::String(_) | Type::Characters(_) | Type::Struct(_) => name,
+        // It is the number of an object, which another build may have for another.
+        Type::Reference => {
+            let objects: Vec<String> = map.objects.iter().map(|(offset, size)| format!("{offset},{size}")).collect();
+            format!("{name}({:08x})", staunch_runtime::crc32(objects.join(";").as_bytes()))
+        }
+        Type::Bit(_) | Type::String(_) | Type::Characters(_) | Type::Struct(_) => name,
     }
 }
 

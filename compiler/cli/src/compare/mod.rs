@@ -155,6 +155,7 @@ fn side_by_side(
     let only: Vec<String> = args.vars.iter().flat_map(|it| it.split(',')).map(|it| it.trim().to_owned()).collect();
     pair.compare_only(&only);
     check_compared(&pair, args, &only)?;
+    pair.find_idle();
     pair.settle_counts();
     let uses = pitfall::uses(&pair);
     let mut findings = Findings::new(&pair, &world, &uses, renamed);
@@ -181,7 +182,7 @@ fn side_by_side(
         Some(it @ Verdict::Differs { .. }) => (it, None),
         rest => (verdict, rest),
     };
-    let without_run = judge::without_run(&mut pair, &world, args, &verdict);
+    let without_run = judge::without_run(&mut pair, &world, args, &verdict, &mut findings);
     Ok(Compared { pair, world, findings, accepted, verdict, rest, without_run })
 }
 

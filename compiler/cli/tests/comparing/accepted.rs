@@ -40,6 +40,10 @@ fn what_is_named_and_what_is_wired_are_outputs() {
     let arguments = ["--from", "iec", "--to", "openplc", "--accept", counters.as_str()];
     let (code, text) = OWN.compare("inside", &plain, &arguments);
     assert_eq!(code, Some(0), "{text}");
+    let handed_on = plain.replace("motor := c.CV > 2;", "motor := Over(c.CV);");
+    let over = "FUNCTION Over : BOOL VAR_INPUT n : INT; END_VAR Over := n > 2; END_FUNCTION\n";
+    let (code, text) = OWN.compare("handed_on", &format!("{over}{handed_on}"), &arguments);
+    assert_eq!(code, Some(0), "{text}");
     let (code, text) = OWN.compare("named", &plain, &[&arguments[..], &["--vars", "motor,lamp"]].concat());
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("Not accepted: `motor output`."), "{text}");

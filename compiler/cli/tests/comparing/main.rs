@@ -8,6 +8,7 @@ mod advised;
 mod beyond;
 mod blamed;
 mod claims;
+mod idle;
 mod open;
 mod own;
 mod planted;

@@ -1,10 +1,10 @@
 //! A chart as the C code runs it that MATIEC generates (`generate_c_sfc.cc`), which is what OpenPLC 3 and Beremiz do.
 
-use super::{Action, Actions, moved, tested, tree};
+use super::{Action, Actions, fire, moved, tested, tree};
 use crate::ast::{Association, BinaryOp, Chart, Expr, Name, Qualifier, Statement};
 
 pub(super) fn write<'s>(chart: &Chart<'s>, actions: &Actions<'s>, body: &mut Vec<Statement<'s>>) {
-    let passed = |at| vec![tree::input("passed", tree::member(tree::named(super::CLOCK, at), "passed"))];
+    let passed = |at| vec![tree::input("passed", tree::member(tree::named(crate::added::CLOCK, at), "passed"))];
     body.extend(
         chart.steps.iter().map(|it| tree::call(tree::member(tree::name(it.name), "__scan"), passed(it.name.span))),
     );
@@ -34,20 +34,15 @@ fn transitions<'s>(chart: &Chart<'s>, body: &mut Vec<Statement<'s>>) {
         let transition = &chart.transitions[at];
         let span = transition.span;
         body.push(tree::assign(tree::fires(at, span), tree::truth(false, span)));
-        let mut fire = vec![tree::assign(tree::fires(at, span), tree::truth(true, span))];
+        let mut then = vec![tree::assign(tree::fires(at, span), tree::truth(true, span))];
         if transition.priority.is_some() {
-            fire.extend(moved(&transition.from, "__leave"));
+            then.extend(moved(&transition.from, "__leave"));
         }
         let active = transition.from.iter().map(|it| tree::member(tree::name(*it), "X"));
         let Some(active) = tree::joined(active, BinaryOp::And) else { continue };
-        body.push(tree::when(active, vec![tree::test(transition, fire)]));
+        body.push(tree::when(active, vec![tree::test(transition, then)]));
     }
-    for (at, transition) in chart.transitions.iter().enumerate().filter(|it| it.1.priority.is_none()) {
-        body.push(tree::when(tree::fires(at, transition.span), moved(&transition.from, "__leave")));
-    }
-    for (at, transition) in chart.transitions.iter().enumerate() {
-        body.push(tree::when(tree::fires(at, transition.span), moved(&transition.to, "__enter")));
-    }
+    fire(chart, |it| it.priority.is_some(), body);
 }
 
 /// What a step says of an action in each scan.

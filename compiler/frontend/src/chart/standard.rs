@@ -1,13 +1,13 @@
 //! A chart as the standard describes it (IEC 61131-3, 6.7.4 and 6.7.5): one action control for each action, and of the transitions
 //! from a step the first that may fire.
 
-use super::{Action, Actions, moved, tested, tree};
+use super::{Action, Actions, fire, tested, tree};
 use crate::ast::{BinaryOp, Chart, Expr, Qualifier, Statement};
 use crate::spelling::Key;
 
 pub(super) fn write<'s>(chart: &Chart<'s>, actions: &Actions<'s>, body: &mut Vec<Statement<'s>>) {
     for step in &chart.steps {
-        let passed = tree::member(tree::named(super::CLOCK, step.name.span), "passed");
+        let passed = tree::member(tree::named(crate::added::CLOCK, step.name.span), "passed");
         body.push(tree::call(tree::member(tree::name(step.name), "__scan"), vec![tree::input("passed", passed)]));
     }
     transitions(chart, body);
@@ -31,16 +31,11 @@ fn transitions<'s>(chart: &Chart<'s>, body: &mut Vec<Statement<'s>>) {
         let active = transition.from.iter().map(|it| tree::member(tree::name(*it), "X"));
         let others = order[..place].iter().filter(shares).map(|it| tree::not(tree::fires(*it, span)));
         let Some(enabled) = tree::joined(active.chain(others), BinaryOp::And) else { continue };
-        let fire = vec![tree::assign(tree::fires(*at, span), tree::truth(true, span))];
+        let then = vec![tree::assign(tree::fires(*at, span), tree::truth(true, span))];
         body.push(tree::assign(tree::fires(*at, span), tree::truth(false, span)));
-        body.push(tree::when(enabled, vec![tree::test(transition, fire)]));
+        body.push(tree::when(enabled, vec![tree::test(transition, then)]));
     }
-    for (at, transition) in chart.transitions.iter().enumerate() {
-        body.push(tree::when(tree::fires(at, transition.span), moved(&transition.from, "__leave")));
-    }
-    for (at, transition) in chart.transitions.iter().enumerate() {
-        body.push(tree::when(tree::fires(at, transition.span), moved(&transition.to, "__enter")));
-    }
+    fire(chart, |_| false, body);
 }
 
 /// Calls the control of an action with what the steps say of it.

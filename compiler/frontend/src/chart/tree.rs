@@ -1,7 +1,8 @@
 //! Pieces of trees that charts are written out with. What nobody wrote has an empty place: coverage does not count it.
 
-use super::{ACTIONS, Action, FIRED};
+use super::Action;
 use crate::Span;
+use crate::added::{ACTIONS, FIRED};
 use crate::ast::{
     Argument, ArgumentKind, BinaryOp, Bound, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Statement,
     StatementKind, Transition, TypeKind, TypeSpec, UnaryOp, VarDecl,

@@ -159,7 +159,9 @@ impl<'s> Declarations<'s> {
 
 /// The least and the greatest TIME in milliseconds, where that is what it is in all files.
 fn milliseconds_of_all(files: &[Dialect]) -> Option<(i64, i64)> {
-    let limits = |it: &Dialect| it.rules().milliseconds()?.repr().range();
+    let limits = |it: &Dialect| {
+        it.rules().time_count().filter(|it| it.unit == staunch_runtime::time::MILLISECOND)?.ty.repr().range()
+    };
     let (first, rest) = files.split_first()?;
     let (least, greatest) = limits(first).filter(|all| rest.iter().all(|it| limits(it) == Some(*all)))?;
     Some((i64::try_from(least).ok()?, i64::try_from(greatest).ok()?))

@@ -1,6 +1,7 @@
 //! The variables that a POU declares, one declaration at a time.
 
 use super::pou::Builder;
+use super::specs::Within;
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
 use crate::types::declarations::Declarations;
@@ -110,7 +111,7 @@ impl<'s> Declarations<'s> {
             None => match self.abstract_in_out(builder.slot, block, decl) {
                 Some(ty) => Some(Resolved::plain(ty)),
                 None if pou.kind.is_block() && self.is_bit(&decl.ty) => self.initial_bit(decl, scope),
-                None => self.declared_type(decl, scope, owner),
+                None => self.declared_type(decl, scope, owner, Within::of(pou)),
             },
         };
         if !self.log.has_errors_since(reported) {

@@ -1,5 +1,6 @@
 //! Signatures: what callers of a POU see, and where its variables live.
 
+use super::specs::Within;
 use crate::ast::{self, PouKind, VarKind};
 use crate::diagnostic::wording::article;
 use crate::dialect::Dialect;
@@ -157,7 +158,9 @@ impl<'s> Declarations<'s> {
                 for decl in &block.vars {
                     let scope = Rc::clone(&builder.scope);
                     let owner = decl.names.first().map_or(pou.name.text, |it| it.text);
-                    let Some(resolved) = self.declared_type(decl, &scope, owner).map(Rc::new) else { continue };
+                    let Some(resolved) = self.declared_type(decl, &scope, owner, Within::Pou).map(Rc::new) else {
+                        continue;
+                    };
                     for name in &decl.names {
                         let place = self.push_field(block, decl, *name, &resolved, builder);
                         if let Some(field) = builder.fields.last_mut() {
@@ -184,7 +187,7 @@ impl<'s> Declarations<'s> {
             let before = waiting.len();
             waiting.retain(|(block, decl)| {
                 let reported = self.log.diagnostics.len();
-                let resolved = self.declared_type(decl, &scope, pou.name.text);
+                let resolved = self.declared_type(decl, &scope, pou.name.text, Within::of(pou));
                 let known = resolved.filter(|_| self.log.diagnostics.len() == reported);
                 let others =
                     self.log.diagnostics.split_off(reported).into_iter().filter(|it| !within(it.span, decl.span));

@@ -2,6 +2,7 @@
 
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
+use crate::dialect::rules::ArrayValues;
 use crate::dialect::{self, Dialect, missing};
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense};
@@ -68,6 +69,21 @@ const FOREIGN: [(&str, &str); 24] = [
     ("DURATION", "TIME"),
 ];
 
+/// Where something is declared, as far as that decides whether it starts with its initial value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Within {
+    /// A FUNCTION_BLOCK, a FUNCTION or what is in one.
+    Pou,
+    /// A PROGRAM, a structure, global variables.
+    Others,
+}
+
+impl Within {
+    pub(super) fn of(pou: &ast::Pou<'_>) -> Self {
+        if pou.kind == ast::PouKind::Program { Self::Others } else { Self::Pou }
+    }
+}
+
 impl<'s> Declarations<'s> {
     pub(super) fn resolve_type_slot(&mut self, at: usize) -> Option<Resolved> {
         let decl = self.types[at].decl;
@@ -123,6 +139,7 @@ impl<'s> Declarations<'s> {
         decl: &'s ast::VarDecl<'s>,
         scope: &Rc<Scope<'s>>,
         name: &str,
+        within: Within,
     ) -> Option<Resolved> {
         let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
         self.check_construction(decl, resolved.ty);
@@ -130,10 +147,27 @@ impl<'s> Declarations<'s> {
             // A refused value has been reported; the type is known anyway.
             let is_flat = self.has_flat_rows(&decl.ty, initial);
             let value = if is_flat { None } else { self.initial(initial, &resolved, scope) };
-            resolved.initial = value.unwrap_or(resolved.initial);
+            if !self.leaves_out(decl, initial, resolved.ty, within) {
+                resolved.initial = value.unwrap_or(resolved.initial);
+            }
         }
         self.count_constants(&mut resolved, decl);
         Some(resolved)
+    }
+
+    /// Whether the system does not apply the initial value of an array, which is reported.
+    fn leaves_out(&mut self, decl: &ast::VarDecl<'s>, initial: &ast::Initial<'s>, ty: Type, within: Within) -> bool {
+        let is_left_out = within == Within::Others
+            && matches!(ty, Type::Array(_))
+            && self.dialect(initial.span).rules().array_values.choice == ArrayValues::InBlocks;
+        if let (true, Some(name)) = (is_left_out, decl.names.first()) {
+            self.report(
+                Diagnostic::new(Code::W0415, initial.span, format!("`{}` does not start with these values", name.text))
+                    .label("STruC++ 0.6.1 applies initial values of arrays in FUNCTION_BLOCKs and FUNCTIONs only")
+                    .help("assign them in the first scan, or declare the array in a FUNCTION_BLOCK"),
+            );
+        }
+        is_left_out
     }
 
     /// Refuses an initial value with which all of them would hold too many constants: a structure

@@ -1,5 +1,6 @@
 //! Structures and UNIONs, and what is some bits of another member.
 
+use super::specs::Within;
 use crate::ast;
 use crate::names::{Found, Sense};
 use crate::types::declarations::Declarations;
@@ -83,7 +84,7 @@ impl<'s> Declarations<'s> {
             let is_bit = self.is_bit(&decl.ty);
             let resolved = match is_bit {
                 true => self.initial_bit(decl, scope),
-                false => self.declared_type(decl, scope, owner),
+                false => self.declared_type(decl, scope, owner, Within::Others),
             };
             let Some(resolved) = resolved.map(Rc::new) else {
                 complete = false;
@@ -168,7 +169,7 @@ impl<'s> Declarations<'s> {
             let is_bit = self.is_bit(&decl.ty);
             let resolved = match is_bit {
                 true => self.initial_bit(decl, scope),
-                false => self.declared_type(decl, scope, owner),
+                false => self.declared_type(decl, scope, owner, Within::Others),
             };
             let resolved = resolved.map(Rc::new);
             let Some((resolved, part)) =

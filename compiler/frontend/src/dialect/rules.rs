@@ -10,8 +10,8 @@ mod systems;
 use super::Dialect;
 use choice::Choice;
 pub use choice::{
-    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
+    ArrayValues, ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed,
+    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
     RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 pub use followed::{Followed, Rules};
@@ -70,6 +70,7 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.loop_limit),
         row(|it| &it.time_unit),
         row(|it| &it.long_time),
+        row(|it| &it.array_values),
     ]
 }
 

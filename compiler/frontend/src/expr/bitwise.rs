@@ -4,7 +4,6 @@
 use super::checker::Checker;
 use super::operand::{Operand, computed, pattern};
 use super::operator::{Meeting, Sides};
-use crate::dialect::rules::Functions;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::narrow::is_narrow;
@@ -60,16 +59,12 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Whether STruC++ writes C++'s `!` for NOT of this, which makes 1 of 0 and 0 of anything else: it does where it does not
-    /// know the type, right before SEL, MUX and LIMIT, and before a function whose first argument has no known type; and NOT of
-    /// that, in parentheses, is of a BOOL.
+    /// know the type or takes it for INT: right before a number without a type, SEL, MUX and LIMIT, and before a function whose
+    /// first argument is one of those or has no known type; and NOT of that, in parentheses, is of a BOOL.
     pub(super) fn negates_as_bool(&self, inner: &ast::Expr<'s>) -> bool {
-        let is_chosen = |callee: &ast::Expr<'s>| match &callee.kind {
-            ast::ExprKind::Name(name) => ["SEL", "MUX", "LIMIT"].iter().any(|it| it.eq_ignore_ascii_case(name.text)),
-            _ => false,
-        };
-        self.decl.dialect(inner.span).rules().functions.choice == Functions::OfStrucpp
+        self.has_functions_of_strucpp(inner.span)
             && match &inner.kind {
-                ast::ExprKind::Call(callee, _) => is_chosen(callee) || is_of_unknown(inner),
+                ast::ExprKind::Call(..) => is_chosen(inner) || is_of_unknown(inner),
                 ast::ExprKind::Unary(ast::UnaryOp::Not, it) => matches!(&it.bare().kind, ast::ExprKind::Binary(..)),
                 ast::ExprKind::Paren(it) => match &it.kind {
                     ast::ExprKind::Unary(ast::UnaryOp::Not, inner) => self.negates_as_bool(inner),
@@ -83,7 +78,7 @@ impl<'s> Checker<'_, 's> {
     pub(super) fn is_zero(&mut self, operand: Operand, expected: Option<Type>, span: Span) -> Option<Operand> {
         let value = self.materialise(operand.cut(), expected, span)?;
         let ty = value.ty;
-        if ty == Type::BOOL || !matches!(ty, Type::Elementary(it) if it.is_bits()) {
+        if ty == Type::BOOL || !matches!(ty, Type::Elementary(it) if it.is_bits() || it.is_integer()) {
             return self.not(value, span).map(Operand::Typed);
         }
         let zero = Expr::new(ty, ExprKind::Const(self.decl.program.repr(ty)?.zero()), value.at);
@@ -188,8 +183,20 @@ fn is_of_unknown(call: &ast::Expr<'_>) -> bool {
     });
     let combines = |it: &ast::Expr<'_>| match &it.kind {
         ast::ExprKind::Binary(_, op, _) => matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor),
-        ast::ExprKind::Call(..) => is_of_unknown(it),
-        _ => false,
+        ast::ExprKind::Call(..) => is_chosen(it) || is_of_unknown(it),
+        _ => is_number(it),
     };
     is_one && first.is_some_and(combines)
+}
+
+/// Whether it is a call of a function whose result has no type that STruC++ knows.
+fn is_chosen(call: &ast::Expr<'_>) -> bool {
+    let ast::ExprKind::Call(callee, _) = &call.kind else { return false };
+    let ast::ExprKind::Name(name) = &callee.kind else { return false };
+    ["SEL", "MUX", "LIMIT"].iter().any(|it| it.eq_ignore_ascii_case(name.text))
+}
+
+/// A number without a type.
+pub(super) fn is_number(expr: &ast::Expr<'_>) -> bool {
+    matches!(&expr.bare().kind, ast::ExprKind::Literal(it) if it.prefix.is_none())
 }

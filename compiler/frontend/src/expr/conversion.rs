@@ -30,13 +30,19 @@ impl<'s> Checker<'_, 's> {
         };
         let to = match parsed.to {
             Converted::Elementary(to) => self.decl.dialect(name.span).rules().own(to),
-            Converted::Text { wide } => return self.text_of(value_expr, wide, value.span, name),
+            Converted::Text { wide } => {
+                let value_expr = self.plain_bool_as_number(value_expr, value);
+                return self.text_of(value_expr, wide, value.span, name);
+            }
         };
         match parsed.how {
             How::Value => {}
             How::Rounds(how) => return self.round(value_expr, how, to, value.span, name),
             How::FromBcd => return self.decimal(Op::FromBcd, Class::Bit, value_expr, to, value.span, name),
             How::ToBcd => return self.decimal(Op::ToBcd, Class::Unsigned, value_expr, to, value.span, name),
+        }
+        if to == Elementary::Bool && self.is_pointer_in_strucpp(value) {
+            return Some(Expr::constant(Elementary::Bool, Value::Bool(true), value_expr.at));
         }
         if let Type::String(_) = value_expr.ty {
             return self.value_of_text(value_expr, to, name.span);
@@ -167,7 +173,7 @@ impl<'s> Checker<'_, 's> {
                     _ => self.number_as(value, Elementary::Lint, span)?,
                 };
                 if to == Elementary::Time && !real {
-                    return self.time_of_milliseconds(wide, span);
+                    return self.time_of_count(wide, span);
                 }
                 let nanoseconds = self.scaled_by(Op::Mul, wide, unit, real, span)?;
                 let count = self.convert(Conversion::Value, Type::LINT, nanoseconds);
@@ -182,6 +188,7 @@ impl<'s> Checker<'_, 's> {
         match (self.decl.dialect(span).rules().date_as_number.choice, ty) {
             (DateAsNumber::DaysSince1990, Elementary::Date) => (DAY, staunch_runtime::time::date(1990, 1, 1)),
             (DateAsNumber::AsStored, Elementary::Date) => (DAY, 0),
+            (_, Elementary::Time) => (self.decl.dialect(span).rules().time_count().map_or(unit, |it| it.unit), 0),
             (DateAsNumber::AsStored, Elementary::Tod | Elementary::Dt) => (1, 0),
             _ => (unit, 0),
         }

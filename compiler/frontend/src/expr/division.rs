@@ -11,7 +11,11 @@ impl Checker<'_, '_> {
         let rules = self.decl.dialect(span).rules();
         let rule = if op == Op::Div { rules.division_by_zero } else { rules.modulo_by_zero };
         let is_integer = ty.elementary().is_some_and(Elementary::is_integer);
-        let zero = b.as_const().and_then(Value::as_integer) == Some(0);
+        let zero = match b.as_const() {
+            Some(Value::F32(it)) => it == 0.0,
+            Some(Value::F64(it)) => it == 0.0,
+            it => it.and_then(Value::as_integer) == Some(0),
+        };
         match rule.choice {
             ByZero::GivesZero if is_integer => {
                 self.warn_of_zero(zero, "the result is 0", span);
@@ -21,6 +25,14 @@ impl Checker<'_, '_> {
             ByZero::Reported if is_integer && self.context == Context::Body && (zero || b.as_const().is_none()) => {
                 self.warn_of_zero(zero, "each division is a minor fault, and its result is the dividend", span);
                 self.dividend_or_quotient(op, ty, (a, b), zero, span)
+            }
+            ByZero::Reported if self.context == Context::Body && (zero || b.as_const().is_none()) => {
+                self.warn_of_zero(
+                    zero,
+                    "each division is a minor fault, and its result is infinite or not a number",
+                    span,
+                );
+                self.reported_quotient(op, ty, (a, b), zero, span)
             }
             ByZero::Faults | ByZero::GivesZero | ByZero::Reported => self.apply(op, ty, vec![a, b], ty, span),
         }
@@ -64,6 +76,34 @@ impl Checker<'_, '_> {
         let otherwise = vec![Statement::assign(result.clone(), quotient, at)];
         self.push(StatementKind::If { condition, then: vec![report], otherwise }, span);
         Some(Expr::load(result, at))
+    }
+
+    /// The quotient of reals, of which one by 0 is reported, too.
+    fn reported_quotient(
+        &mut self,
+        op: Op,
+        ty: Type,
+        (mut a, mut b): (Expr, Expr),
+        is_zero: bool,
+        span: Span,
+    ) -> Option<Expr> {
+        let report = self.minor_fault(span)?;
+        if is_zero {
+            if a.as_const().is_none() {
+                self.save("dividend", &mut a);
+            }
+            self.block.push(report);
+            return self.apply(op, ty, vec![a, b], ty, span);
+        }
+        for (name, side) in [("dividend", &mut a), ("divisor", &mut b)] {
+            if side.as_const().is_none() {
+                self.save(name, side);
+            }
+        }
+        let zero = Expr::new(ty, staunch_ir::ExprKind::Const(self.decl.program.repr(ty)?.zero()), self.at(span));
+        let condition = self.apply(Op::Eq, ty, vec![b.clone(), zero], Type::BOOL, span)?;
+        self.push(StatementKind::If { condition, then: vec![report], otherwise: Vec::new() }, span);
+        self.apply(op, ty, vec![a, b], ty, span)
     }
 
     /// The statement that notes a minor fault at this place.

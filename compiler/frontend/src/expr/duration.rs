@@ -59,8 +59,8 @@ impl Checker<'_, '_> {
     fn limits_in_words(&self, ty: Elementary, span: Span) -> Option<String> {
         let rules = self.decl.dialect(span).rules();
         let (least, greatest) = rules.limits(ty)?;
-        let is_whole = ty == Elementary::Time && rules.milliseconds().is_some();
-        let unit = if is_whole { "whole milliseconds, " } else { "" };
+        let count = rules.time_count().filter(|_| ty == Elementary::Time);
+        let unit = count.map_or_else(String::new, |it| format!("whole {}, ", it.words));
         Some(format!("{} holds {unit}{} to {} in this dialect", ty.name(), spelled(ty, least), spelled(ty, greatest)))
     }
 
@@ -112,11 +112,13 @@ impl Checker<'_, '_> {
         if op == Op::Mul {
             self.refuse_overflow([&time, &count], i128::checked_mul, sides.span)?;
         }
-        if ty == Type::TIME && self.decl.dialect(op_span).rules().milliseconds().is_some() {
+        if ty == Type::TIME
+            && let Some(counted) = self.decl.dialect(op_span).rules().time_count()
+        {
             let nanoseconds = self.convert(Conversion::Same, Type::LINT, time);
-            let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, op_span)?;
-            let scaled = self.apply(op, Type::LINT, vec![milliseconds, count], Type::LINT, op_span)?;
-            return self.time_of_milliseconds(scaled, op_span);
+            let units = self.scaled_by(Op::Div, nanoseconds, counted.unit, false, op_span)?;
+            let scaled = self.apply(op, Type::LINT, vec![units, count], Type::LINT, op_span)?;
+            return self.time_of_count(scaled, op_span);
         }
         let count = self.retyped(count, ty);
         self.apply(op, ty, vec![time, count], ty, op_span)
@@ -145,14 +147,13 @@ impl Checker<'_, '_> {
         self.kept_duration(scaled, op_span)
     }
 
-    /// What the dialect keeps of a duration: of a TIME the number of milliseconds, where it is one.
+    /// What the dialect keeps of a duration: of a TIME the number of its units, where it is one.
     pub(super) fn kept_duration(&mut self, duration: Expr, span: Span) -> Option<Expr> {
-        if duration.ty != Type::TIME || self.decl.dialect(span).rules().milliseconds().is_none() {
-            return Some(duration);
-        }
+        let counted = self.decl.dialect(span).rules().time_count();
+        let Some(counted) = counted.filter(|_| duration.ty == Type::TIME) else { return Some(duration) };
         let nanoseconds = self.convert(Conversion::Same, Type::LINT, duration);
-        let milliseconds = self.scaled_by(Op::Div, nanoseconds, MILLISECOND, false, span)?;
-        self.time_of_milliseconds(milliseconds, span)
+        let units = self.scaled_by(Op::Div, nanoseconds, counted.unit, false, span)?;
+        self.time_of_count(units, span)
     }
 
     /// The same bits as another type.
@@ -171,11 +172,12 @@ impl Checker<'_, '_> {
     /// An LTIME without a sign as a TIME.
     pub(super) fn shortened(&mut self, long: Expr, span: Span) -> Option<Expr> {
         let nanoseconds = self.nanoseconds_of(long);
-        let millisecond = Expr::constant(Elementary::Ulint, Value::U64(MILLISECOND.unsigned_abs()), nanoseconds.at);
+        let unit = self.decl.dialect(span).rules().time_count().map_or(MILLISECOND, |it| it.unit);
+        let unit = Expr::constant(Elementary::Ulint, Value::U64(unit.unsigned_abs()), nanoseconds.at);
         let ulint = nanoseconds.ty;
-        let milliseconds = self.apply(Op::Div, ulint, vec![nanoseconds, millisecond], ulint, span)?;
-        let milliseconds = self.convert(Conversion::Value, Type::LINT, milliseconds);
-        self.time_of_milliseconds(milliseconds, span)
+        let units = self.apply(Op::Div, ulint, vec![nanoseconds, unit], ulint, span)?;
+        let units = self.convert(Conversion::Value, Type::LINT, units);
+        self.time_of_count(units, span)
     }
 
     /// An LTIME without a sign where one with a sign is taken, as the preset of a timer: 292 years at most.
@@ -228,16 +230,19 @@ impl Checker<'_, '_> {
         Some((kept, value))
     }
 
-    /// A LINT of milliseconds as a TIME: what the dialect does not keep of it is cut off above.
-    pub(super) fn time_of_milliseconds(&mut self, milliseconds: Expr, span: Span) -> Option<Expr> {
-        let count = match self.decl.dialect(span).rules().milliseconds() {
-            Some(ty) => {
-                let kept = self.convert(Conversion::Value, Type::Elementary(ty), milliseconds);
+    /// A LINT of milliseconds, or of the units that a TIME is a number of, as a TIME: what the dialect does not keep of it is cut off
+    /// above.
+    pub(super) fn time_of_count(&mut self, units: Expr, span: Span) -> Option<Expr> {
+        let counted = self.decl.dialect(span).rules().time_count();
+        let count = match counted {
+            Some(counted) => {
+                let kept = self.convert(Conversion::Value, Type::Elementary(counted.ty), units);
                 self.convert(Conversion::Value, Type::LINT, kept)
             }
-            None => milliseconds,
+            None => units,
         };
-        let nanoseconds = self.scaled_by(Op::Mul, count, MILLISECOND, false, span)?;
+        let unit = counted.map_or(MILLISECOND, |it| it.unit);
+        let nanoseconds = self.scaled_by(Op::Mul, count, unit, false, span)?;
         Some(self.convert(Conversion::Same, Type::TIME, nanoseconds))
     }
 
@@ -245,7 +250,7 @@ impl Checker<'_, '_> {
     pub(super) fn refuse_unkept(&mut self, nanoseconds: Time, span: Span) -> Option<()> {
         let rules = self.decl.dialect(span).rules();
         let (least, greatest) = rules.limits(Elementary::Time)?;
-        let is_whole = rules.milliseconds().is_none() || nanoseconds % MILLISECOND == 0;
+        let is_whole = rules.time_count().is_none_or(|it| nanoseconds % it.unit == 0);
         if is_whole && (least..=greatest).contains(&i128::from(nanoseconds)) {
             return Some(());
         }

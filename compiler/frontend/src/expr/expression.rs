@@ -216,6 +216,9 @@ impl<'s> Checker<'_, 's> {
             (UnaryOp::Plus, operand) => Some(operand),
             (UnaryOp::Neg, operand) if operand.typed().is_some() => self.negate(operand, span),
             (UnaryOp::Neg, number) => Some(number.negated()),
+            (UnaryOp::Not, Operand::Integer(number)) if self.has_functions_of_strucpp(inner.span) => {
+                Some(Operand::Integer(i128::from(number == 0)))
+            }
             (UnaryOp::Not, operand) if self.negates_as_bool(inner) => self.is_zero(operand, expected, inner.span),
             (UnaryOp::Not, operand) => self.complement(operand, expected, inner.span),
         }

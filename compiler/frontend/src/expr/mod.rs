@@ -65,6 +65,7 @@ pub(crate) mod s7_function;
 mod standard;
 pub(crate) mod start;
 mod string_compare;
+mod strucpp;
 mod system_use;
 pub(crate) mod test_words;
 mod text_conversion;

@@ -60,7 +60,7 @@ impl<'s> Checker<'_, 's> {
         self.combine(sides)
     }
 
-    /// The bit string that a call on the left listens to: that of the variable on the right.
+    /// The bit string that a call or a number on the left listens to: that of the variable on the right.
     fn bits_beside(&mut self, left: &ast::Expr<'s>, right: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
         if !matches!(right.bare().kind, ast::ExprKind::Name(_) | ast::ExprKind::Member(..)) {
             return None;
@@ -70,10 +70,18 @@ impl<'s> Checker<'_, 's> {
         self.bits_of_side(found, left, op)
     }
 
-    /// MATIEC compares a bit string with a call of SEL, MUX and the like at its type, also where that is given numbers alone.
-    fn bits_of_side(&self, ty: Option<Type>, call: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
-        let is_matiec = self.decl.dialect(call.span).rules().functions.choice == Functions::OfMatiec;
-        let listens = is_matiec && compares(op) && matches!(call.bare().kind, ast::ExprKind::Call(..));
+    /// NOT of a number without a type takes that of the bit string beside it. MATIEC compares a bit string with a call of SEL, MUX
+    /// and the like at its type, also where that is given numbers alone.
+    fn bits_of_side(&self, ty: Option<Type>, side: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
+        let is_matiec = self.decl.dialect(side.span).rules().functions.choice == Functions::OfMatiec;
+        let is_number = |it: &ast::Expr<'_>| matches!(it.bare().kind, ast::ExprKind::Literal(_));
+        let listens = match &side.bare().kind {
+            ast::ExprKind::Call(..) => is_matiec && compares(op),
+            ast::ExprKind::Unary(ast::UnaryOp::Not, inner) => {
+                matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor) && is_number(inner)
+            }
+            _ => false,
+        };
         ty.filter(|it| listens && matches!(it, Type::Elementary(it) if it.is_bits() && *it != Elementary::Bool))
     }
 
@@ -494,7 +502,8 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Operand> {
         let a = self.operand(left, hint);
         let is_bool = a.as_ref().and_then(Operand::ty) == Some(Type::BOOL);
-        let right_hint = a.as_ref().map_or(hint, |it| beside(it, hint));
+        let beside = |it: &Operand| beside(it, hint).or_else(|| self.bits_of_side(it.ty(), right, op));
+        let right_hint = a.as_ref().map_or(hint, beside);
         let mut b = None;
         let evaluate = self.nested(|this| b = this.operand(right, right_hint));
         let (mut a, mut b) = (a?, b?);

@@ -1,6 +1,7 @@
 //! Calls of the standard's functions: the table of all, and what is more than an operation on
 //! operands of one type.
 
+use super::bitwise::is_number;
 use super::checker::{Checker, Context};
 use super::constant::is_constant;
 use super::operand::{Operand, computed};
@@ -11,8 +12,8 @@ use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast, dialect};
 use ast::BinaryOp;
 use staunch_ir::{
-    Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Statement, StatementKind, Type,
-    Use, Value,
+    Arm, Block, Chars, Conversion, Elementary, Expr, ExprKind, FaultKind, Location, Op, Part, Statement, StatementKind,
+    Type, Use, Value,
 };
 use staunch_runtime::{Class, Kind, Repr, Signature, signature};
 
@@ -53,6 +54,9 @@ impl<'s> Checker<'_, 's> {
             }
             Meaning::Operation(op) => {
                 let is_turned = matches!(op, Op::Rol | Op::Ror);
+                if matches!(op, Op::Shl | Op::Shr) && is_number(values[0]) {
+                    self.note_use(Use::Part(Part::ShiftOfConstant), name.span);
+                }
                 let expected = self.least_bits(values[0]).filter(|_| is_turned).or(expected);
                 let resolved = self.resolve(signature, &values, expected, name)?;
                 match op {

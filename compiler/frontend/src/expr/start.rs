@@ -3,9 +3,10 @@
 
 use super::checker::Checker;
 use super::generic_call::Called;
+use crate::added::{KEPT, RETAINS};
 use crate::ast::{self, ArgumentKind, InitialKind, LiteralValue, PouKind};
 use crate::spelling::Key;
-use crate::start::{EXIT, GLOBALS, KEPT, MEMBERS, RETAINS, START};
+use crate::start::{EXIT, GLOBALS, MEMBERS, START};
 use crate::testing::tree::{literal, named};
 use crate::types::declarations::Slot;
 use crate::types::scope::Variable;

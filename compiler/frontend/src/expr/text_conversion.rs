@@ -50,7 +50,10 @@ impl<'s> Checker<'_, 's> {
         let mut operands = vec![self.convert(Conversion::Value, Type::Elementary(operand), value)];
         operands.extend(self.kind_of_time(op, ty, name.span));
         let number = operands.first().cloned()?;
-        let text = self.text_function_of(op, Type::string(op.longest()?), operands, name.span)?;
+        // STruC++'s are as long as any STRING.
+        let longest = self.decl.dialect(name.span).rules().default_string.choice.capacity();
+        let longest = if strucpp { longest } else { op.longest()? };
+        let text = self.text_function_of(op, Type::string(longest), operands, name.span)?;
         let has_sign = ty.is_integer() && ty.repr().is_signed() && self.decl.dialect(name.span).rules().writes_plus();
         if has_sign { self.with_plus(text, number, name.span) } else { Some(text) }
     }

@@ -205,9 +205,7 @@ fn variables(image: &Image, signature: &Signature<'_>) -> Vec<staunch_ir::Variab
         let (place, view) = image.stored(&it.place);
         staunch_ir::Variable { name: it.name.text.to_owned(), section: it.section, place, view }
     };
-    let is_hidden =
-        |name: &str| crate::start::is_hidden(name) || crate::chart::is_hidden(name) || crate::enabled::is_hidden(name);
-    signature.scope.variables.iter().filter(|it| !is_hidden(it.name.text)).map(variable).collect()
+    signature.scope.variables.iter().filter(|it| !crate::added::is_added(it.name.text)).map(variable).collect()
 }
 
 fn call_of_instance(statement: &Statement) -> Option<(RoutineId, &Place)> {

@@ -6,6 +6,7 @@ use super::computed::{Owner, When, is_computed_block};
 use super::expected::{By, Expected, Types};
 use super::varying::Names;
 use crate::Span;
+use crate::added::ADDRESSED;
 use crate::ast::{
     BinaryOp, Element, Expr, ExprKind, Initial, InitialKind, LiteralValue, Name, Pou, PouKind, Statement,
     StatementKind, TypeKind, TypeSpec, UnaryOp, VarBlock, VarDecl, VarKind, each_part,
@@ -104,9 +105,6 @@ pub(super) fn of_calls<'s>(pou: &mut Pou<'s>, types: &Types<'s>, around: &Names<
         }
     }
 }
-
-/// Marks that the addresses of VAR_STAT, or VAR_INST, have been assigned.
-pub(crate) const ADDRESSED: [&str; 2] = ["__stat_addressed", "__inst_addressed"];
 
 /// Takes out of a POU the addresses of variables that outlive its calls: they are assigned once after each start.
 fn once<'s>(pou: &mut Pou<'s>, kind: VarKind, types: &Types<'s>) -> Vec<Statement<'s>> {

@@ -168,6 +168,7 @@ codes! {
     W0412 Warning "a task without a priority";
     W0413 Warning "an alias without an address";
     W0414 Warning "an address beyond its byte";
+    W0415 Warning "an initial value that is not applied";
     W0501 Warning "unused variable";
     W0502 Warning "unreachable statement";
     W0503 Warning "REAL compared for equality";

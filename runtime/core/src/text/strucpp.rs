@@ -45,27 +45,37 @@ pub fn insert_before<U: Unit>(text: &[U], inserted: &[U], position: i64, out: &m
     insert(text, inserted, without_sign(position).saturating_sub(1), out);
 }
 
-/// `DELETE`: as [`replace_within`] by nothing.
+/// `DELETE`: as [`replace_within`] by nothing, but for a count of -1, which is C++'s `npos`: nothing follows.
 #[inline]
 pub fn delete_within<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
-    replace_within(text, &[], count, position, out);
+    replace_within(text, &[], if count == -1 { i64::MAX } else { count }, position, out);
 }
 
-/// `REPLACE`: all of the text stays for a position beyond it; 0 acts as 1.
+/// `REPLACE`: all of the text stays for a position beyond it; 0 acts as 1. For a negative count, what follows begins so many
+/// units before the position, or nothing follows where the text begins later than that.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::replace_within};
 /// let text = |count, position| Text::<8>::build(|out| replace_within(b"ABC", b"X", count, position, out));
 /// assert_eq!(text(1, 4).as_bytes(), b"ABC");
 /// assert_eq!(text(1, 0).as_bytes(), b"XBC");
-/// assert_eq!(text(-1, 2).as_bytes(), b"AX");
+/// assert_eq!(text(-1, 2).as_bytes(), b"AXABC");
+/// assert_eq!(text(-2, 2).as_bytes(), b"AX");
 /// ```
 #[inline]
 pub fn replace_within<U: Unit>(text: &[U], by: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
     let position = without_sign(position);
+    let before = position.max(1) - 1;
     match position > text.len() as i64 {
         true => out.write(text),
         false if text.is_empty() => {}
+        false if count < 0 && before.saturating_add(count) >= 0 => {
+            let rest = before.saturating_add(count);
+            left(text, before, out);
+            out.write(by);
+            // What follows lies within the text.
+            out.write(text.get(rest as usize..).unwrap_or_default());
+        }
         false => replace(text, by, without_sign(count), position, out),
     }
 }

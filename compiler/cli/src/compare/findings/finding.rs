@@ -173,14 +173,18 @@ impl Findings {
         }
     }
 
-    /// Where those are in the list that the search does not look at: variables that are not compared.
+    /// Where those are in the list that the search does not look at: variables that are not compared, and blocks that decide nothing
+    /// which is.
     fn not_compared(&self, pair: &Pair, world: &World) -> HashSet<usize> {
         let variable = |it: &Subject| match it {
             Subject::Variable(it) | Subject::Parted(it) | Subject::Output(it) => Some(*it),
             Subject::Computed(at) => Some(world.computed[*at].variable),
             Subject::Counter(_) | Subject::Block(_) | Subject::Fault(..) => None,
         };
-        let is_left_out = |it: &Subject| variable(it).is_some_and(|it| !pair.compared.contains(&it));
+        let is_left_out = |it: &Subject| match it {
+            Subject::Block(at) => pair.is_idle_block(pair.blocks[*at]),
+            it => variable(it).is_some_and(|it| !pair.compared.contains(&it)),
+        };
         self.others.iter().filter(|it| is_left_out(it.0)).map(|it| *it.1).collect()
     }
 

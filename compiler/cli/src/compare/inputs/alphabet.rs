@@ -10,7 +10,6 @@ use crate::compare::program::walked::Name;
 use staunch_host::format_time;
 use staunch_ir::{Chars, Elementary, Program, Repr, Type, Value};
 use staunch_runtime::StringType;
-use staunch_runtime::time::MILLISECOND;
 use std::collections::HashSet;
 
 /// Combinations of inputs that are tried in every scan of an exhaustive search, if it is not over by then.
@@ -156,7 +155,7 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
                     false => Chars::read(StringType { capacity, ..x }, bytes),
                 };
                 let (texts, named) = texts(initial, near.concat(), StringType { capacity, ..x });
-                return Some(Input { scalars, initial: Value::U16(0), texts, named });
+                return Some(Input { scalars, initial: Value::U16(0), range: None, texts, named });
             }
             _ => {}
         }
@@ -165,6 +164,7 @@ fn typed(pair: &Pair, facts: [&Facts; 2], found: Vec<Matched>) -> Vec<Input> {
         (pair.sides[1].program.repr(b.ty)? == repr || are_long_times(a.ty, b.ty)).then(|| Input {
             scalars,
             initial: Value::read(repr, bytes),
+            range: None,
             texts: Vec::new(),
             named: 0,
         })
@@ -320,8 +320,10 @@ fn times_of_both(pair: &Pair, types: [Type; 2]) -> Option<Range> {
         pair.sides[side].dialect.rules().limits(ty)
     };
     let (a, b) = (limits(0)?, limits(1)?);
-    let is_whole = types[0] == Type::TIME && pair.sides.iter().any(|it| it.dialect.rules().milliseconds().is_some());
-    Some(Range { low: a.0.max(b.0), high: a.1.min(b.1), step: if is_whole { i128::from(MILLISECOND) } else { 1 } })
+    let counts = pair.sides.iter().filter_map(|it| it.dialect.rules().time_count()).map(|it| it.unit);
+    let step = counts.max().filter(|_| types[0] == Type::TIME).map_or(1, i128::from);
+    let (low, high) = (a.0.max(b.0), a.1.min(b.1));
+    Some(Range { low: low / step * step, high: high / step * step, step })
 }
 
 /// What to try of a type, those near a comparison first; and whether that is all of it.

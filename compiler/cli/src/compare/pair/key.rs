@@ -1,18 +1,21 @@
 //! What decides all that is to come of both programs, as a number.
 
+use super::idle::{Idle, bytes_of};
 use super::settled::{self, Known, Settled};
 use super::side::Side;
-use super::{Pair, normal};
+use super::{Matched, Pair, normal};
+use crate::compare::program::dependency::{Declared, Dependencies};
 use crate::compare::program::flow::Range;
 use crate::compare::program::walked::Name;
 use staunch_host::Machine;
-use std::collections::HashMap;
+use staunch_ir::effects::{Rules, effects};
+use std::collections::{HashMap, HashSet};
 
 impl Pair {
     /// Looks for counts of which many are equivalent, by what is compared now.
     pub fn settle_counts(&mut self) {
         self.settled = Settled::of(self.known());
-        self.open = vec![false; self.counters.len()];
+        self.open = self.counters.iter().map(|it| self.is_idle_block(*it)).collect();
     }
 
     fn known(&self) -> Known<'_> {
@@ -62,8 +65,9 @@ impl Pair {
             let now = side.drive.next();
             side.timers.iter().for_each(|it| it.settle(state, now));
             self.settled.write(number, state);
-            let idle = self.remaining.get(&self.passed).map(|it| &it.idle[number]);
-            idle.into_iter().flatten().for_each(|it| state[it.clone()].fill(0));
+            let passed_over = self.remaining.get(&self.passed).map(|it| &it.idle[number]);
+            let idle = passed_over.into_iter().flatten().chain(&self.idle.bytes[number]);
+            idle.for_each(|it| state[it.clone()].fill(0));
             all.extend_from_slice(&side.digest.of(state).to_ne_bytes());
             if side.reads_clock {
                 all.extend_from_slice(&now.to_ne_bytes());
@@ -77,5 +81,39 @@ impl Pair {
         all.extend_from_slice(ages);
         self.rest = all;
         normal::hash(&self.rest)
+    }
+}
+
+impl Pair {
+    /// Whether neither program can fault.
+    pub fn is_faultless(&self) -> bool {
+        let is = |it: &Side| effects(&it.program, &Rules::PLAIN).iter().all(|routine| !routine.faults);
+        self.sides.iter().all(is)
+    }
+
+    /// Looks for what decides nothing of what is compared now. A program that may fault may do so by everything.
+    pub fn find_idle(&mut self) {
+        if !self.is_faultless() {
+            self.idle = Idle::default();
+            return;
+        }
+        let fields = [0, 1].map(|side: usize| {
+            let compared: Vec<Declared> = self.compared.iter().filter_map(|it| self.declared(side, *it)).collect();
+            let deciding = Dependencies::of(&self.sides[side].program).deciding(&compared);
+            let scalars = &self.sides[side].scalars;
+            let all = scalars.all.iter().filter_map(|it| it.field);
+            let all = all.chain(scalars.blocks.iter().filter_map(|it| it.field));
+            all.filter(|it| !deciding.contains(it)).collect::<HashSet<_>>()
+        });
+        let bytes = [0, 1].map(|side: usize| bytes_of(&self.sides[side].scalars, &fields[side]));
+        self.idle = Idle { bytes, fields };
+    }
+
+    /// Whether nothing compared depends on a block, by its positions.
+    pub fn is_idle_block(&self, block: Matched) -> bool {
+        (0..2).all(|side| {
+            let field = self.sides[side].scalars.blocks[block[side]].field;
+            field.is_some_and(|it| self.idle.fields[side].contains(&it))
+        })
     }
 }

@@ -37,8 +37,11 @@ pub fn outputs(sides: &[Side; 2], blocks: &[Matched]) -> Vec<Vec<Matched>> {
 
 /// Whether it is Q of a CTD matched with DN of Logix: they mean different things.
 pub fn is_done_of_down(sides: &[Side; 2], matched: Matched) -> bool {
-    let is_down = |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up);
-    block_of(sides, 0, matched).is_some_and(is_down) && is_done_of_logix(sides, 1, matched)
+    let is_down =
+        |it: &Instance| it.has(PinRole::Down) && !it.has(PinRole::Up) && it.block.info().family != Family::Logix;
+    let is =
+        |own: usize| block_of(sides, own, matched).is_some_and(is_down) && is_done_of_logix(sides, 1 - own, matched);
+    is(0) || is(1)
 }
 
 /// Whether it is DN of a counter of Logix.

@@ -8,6 +8,7 @@ mod side;
 
 mod comparison;
 pub mod exchange;
+pub mod idle;
 mod key;
 mod matching;
 mod parting;
@@ -21,6 +22,7 @@ pub use side::Side;
 use crate::compare::program::held;
 use crate::compare::program::scalar::{Role, Scalar};
 use comparison::Comparison;
+use idle::Idle;
 use passing::Passed;
 use settled::Settled;
 use staunch_frontend::rules::{Part, is_followed};
@@ -53,6 +55,8 @@ pub struct Pair {
     pub kept: Vec<Input>,
     /// What is compared after each scan, in the order of the declarations.
     pub compared: Vec<Matched>,
+    /// Outputs that share a name and mean different things, and are compared only where they are named.
+    pub unlike: Vec<Matched>,
     /// Counters that both sides have.
     pub counters: Vec<Matched>,
     /// For each counter, its outputs.
@@ -62,14 +66,15 @@ pub struct Pair {
     pub block_outputs: Vec<Vec<Matched>>,
     /// Whether all of both states is compared, or decides nothing.
     pub whole: bool,
-    /// The counters of the second program are COUNTERs of Logix that `compare` has put in their place: what asked for Q of
-    /// a CTD asks for `ACC <= 0`, and nothing for its DN.
+    /// The counters of the second program are COUNTERs of Logix that `compare` has put in their place.
     pub is_ported: bool,
     compared_bytes: Comparison,
     counter_bytes: Comparison,
     block_bytes: Comparison,
     /// Counts of which many are equivalent.
     settled: Settled,
+    /// What decides nothing of what is compared.
+    pub idle: Idle,
     /// Whether some were taken as one.
     pub are_settled: bool,
     /// The counters of which a trap may be left that was not seen by that.
@@ -99,6 +104,7 @@ impl Pair {
             inputs: Vec::new(),
             kept: Vec::new(),
             compared: Vec::new(),
+            unlike: Vec::new(),
             counters: Vec::new(),
             outputs: Vec::new(),
             blocks: Vec::new(),
@@ -109,6 +115,7 @@ impl Pair {
             counter_bytes: Comparison::default(),
             block_bytes: Comparison::default(),
             settled: Settled::default(),
+            idle: Idle::default(),
             are_settled: false,
             open: Vec::new(),
             scratch: Vec::new(),
@@ -124,9 +131,7 @@ impl Pair {
         pair.counters = matching::blocks(&pair.sides, true);
         pair.blocks = matching::blocks(&pair.sides, false);
         pair.whole = !pair.sides.iter().any(|it| it.scalars.truncated);
-        (pair.outputs, pair.block_outputs) =
-            (matching::outputs(&pair.sides, &pair.counters), matching::outputs(&pair.sides, &pair.blocks));
-        pair.counter_bytes = Comparison::of(&pair.sides, &pair.outputs.concat());
+        pair.block_outputs = matching::outputs(&pair.sides, &pair.blocks);
         pair.block_bytes = Comparison::of(&pair.sides, &pair.block_outputs.concat());
         pair.compare_only(only);
         pair
@@ -135,15 +140,12 @@ impl Pair {
     /// The variables that are compared: all that both sides have, or those that are named.
     pub fn compare_only(&mut self, only: &[String]) {
         self.compared = matching::compared(&self.sides, &self.inputs, only);
-        if self.is_ported {
-            let has_counterpart = |it: &Matched| !matching::is_done_of_down(&self.sides, *it);
-            let is_named = |it: &Matched, compared: &[Matched]| !only.is_empty() && compared.contains(it);
-            let named = self.compared.clone();
-            self.compared.retain(|it| has_counterpart(it) || is_named(it, &named));
-            for outputs in &mut self.outputs {
-                outputs.retain(|it| has_counterpart(it) || is_named(it, &named));
-            }
-        }
+        let named = if only.is_empty() { Vec::new() } else { self.compared.clone() };
+        self.outputs = matching::outputs(&self.sides, &self.counters);
+        let sides = &self.sides;
+        let is_left_out = |it: &Matched| matching::is_done_of_down(sides, *it) && !named.contains(it);
+        self.unlike = self.compared.iter().copied().filter(is_left_out).collect();
+        self.compared.retain(|it| !is_left_out(it));
         self.drop_unread();
         self.counter_bytes = Comparison::of(&self.sides, &self.outputs.concat());
         self.compared_bytes = Comparison::of(&self.sides, &self.compared);

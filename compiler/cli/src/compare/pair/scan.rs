@@ -12,6 +12,8 @@ pub struct Input {
     pub scalars: [usize; 2],
     /// What it holds before anything sets it.
     pub initial: Value,
+    /// Whole numbers that it is always within, by its type or an assumption.
+    pub range: Option<(i128, i128)>,
     /// Of a string, those that are tried: a value is the position of one.
     pub texts: Vec<Chars>,
     /// How many of these an assumption may speak of: the others stand for all texts that nothing names.

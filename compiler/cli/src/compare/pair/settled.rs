@@ -99,8 +99,8 @@ fn read(state: &[u8], (offset, repr): (usize, Repr)) -> Option<i128> {
     Value::read(repr, &state[offset..]).as_integer()
 }
 
-/// The values at the start of the variables that the program alone writes: of a member of several instances, from the least on
-/// to the greatest.
+/// The values at the start of the variables that the program alone writes, and of the inputs that have a range all that they may
+/// be given: of a member of several instances, from the least on to the greatest.
 pub fn starts(known: Known<'_>, side: usize) -> HashMap<Name, Range> {
     let own = &known.sides[side];
     let mut found: HashMap<Name, Range> = HashMap::new();
@@ -109,12 +109,14 @@ pub fn starts(known: Known<'_>, side: usize) -> HashMap<Name, Range> {
         let Some((owner, field)) = scalar.field else { continue };
         let name = Name::Field(owner, field);
         let value = own.program.repr(scalar.ty).and_then(|it| read(&own.initial, (scalar.offset, it)));
-        let is_given = scalar.role == Role::Input || known.inputs.iter().any(|it| it.scalars[side] == at);
+        let input = known.inputs.iter().find(|it| it.scalars[side] == at);
+        let is_given = (scalar.role == Role::Input || input.is_some()) && input.is_none_or(|it| it.range.is_none());
         let is_located = own.program.structure(owner).fields[field.index()].address.is_some();
         match value.filter(|_| !is_given && !is_located && !scalar.is_shared) {
             Some(value) => {
+                let (least, greatest) = input.and_then(|it| it.range).unwrap_or((value, value));
                 let range = found.entry(name).or_insert((value, value));
-                *range = (range.0.min(value), range.1.max(value));
+                *range = (range.0.min(value).min(least), range.1.max(value).max(greatest));
             }
             None => _ = outside.insert(name),
         }

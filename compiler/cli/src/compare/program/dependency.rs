@@ -4,10 +4,13 @@
 use super::walked::{Name, Walked};
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
-    Argument, FieldId, ParamId, Place, Program, Root, Routine, RoutineId, Statement, StatementKind, StructId, Type,
-    reference,
+    Argument, FieldId, Mode, ParamId, Place, Program, Root, Routine, RoutineId, Statement, StatementKind, StructId,
+    Type, reference,
 };
 use std::collections::{HashMap, HashSet};
+
+/// A variable by its declaration.
+pub type Declared = (StructId, FieldId);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Node {
@@ -45,7 +48,15 @@ impl Dependencies {
             found.add(Node::Referenced, Node::Whole(name));
         }
         for (at, routine) in program.routines.iter().enumerate() {
-            let mut walk = Walk { program, routine, id: RoutineId::next(at), found: &mut found };
+            let id = RoutineId::next(at);
+            for (number, param) in routine.params.iter().enumerate() {
+                if let Mode::Value(local) = param.mode {
+                    // The routine reads its own copy.
+                    let name = Name::Param(id, ParamId::next(number));
+                    found.add(Node::Whole(name), Node::Whole(Name::Local(id, local)));
+                }
+            }
+            let mut walk = Walk { program, routine, id, found: &mut found };
             walk.block(&routine.body, &[]);
         }
         found
@@ -77,6 +88,26 @@ impl Dependencies {
         }
         let fields = seen.into_iter().filter_map(|it| match it {
             Node::Whole(Name::Field(owner, field)) => Some((owner, field)),
+            Node::Whole(_) | Node::Part(_) | Node::Run(_) | Node::Result(_) | Node::Referenced => None,
+        });
+        fields.collect()
+    }
+
+    /// The fields that may decide the value of one of these, themselves among them.
+    pub fn deciding(&self, of: &[Declared]) -> HashSet<Declared> {
+        let mut decided_by: HashMap<Node, Vec<Node>> = HashMap::new();
+        for (from, all) in &self.decides {
+            all.iter().for_each(|to| decided_by.entry(*to).or_default().push(*from));
+        }
+        let names = of.iter().map(|it| Name::Field(it.0, it.1));
+        let mut open: Vec<Node> = names.flat_map(|it| [Node::Whole(it), Node::Part(it)]).collect();
+        let mut seen: HashSet<Node> = open.iter().copied().collect();
+        while let Some(node) = open.pop() {
+            let next = decided_by.get(&node).into_iter().flatten();
+            open.extend(next.filter(|it| seen.insert(**it)));
+        }
+        let fields = seen.into_iter().filter_map(|it| match it {
+            Node::Whole(Name::Field(owner, field)) | Node::Part(Name::Field(owner, field)) => Some((owner, field)),
             Node::Whole(_) | Node::Part(_) | Node::Run(_) | Node::Result(_) | Node::Referenced => None,
         });
         fields.collect()

@@ -192,7 +192,7 @@ impl Walk<'_> {
 
     /// For how long a step of a chart is active counts where something asks for it: in `openplc` it lacks a nanosecond at times.
     fn is_time_of_a_step(&self, id: StructId, name: &str) -> bool {
-        self.program.structure(id).name == "__Step" && name == "T"
+        ["__Step", "__MatiecStep"].contains(&self.program.structure(id).name.as_str()) && name == "T"
     }
 
     fn part(&mut self, path: &str, ty: Type, whole: Whole) {

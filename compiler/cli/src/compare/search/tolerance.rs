@@ -6,17 +6,13 @@ use crate::compare::difference::accept::Accepted;
 use crate::compare::difference::beyond::{self, Candidate};
 use crate::compare::difference::kind::Kind;
 use crate::compare::difference::pitfall::{Pitfall, Use};
+use crate::compare::pair::idle::bytes_of;
 use crate::compare::pair::passing::{Passed, Passing};
 use crate::compare::pair::{Matched, Pair};
-use crate::compare::program::dependency::Dependencies;
-use crate::compare::program::scalar::{Role, Scalars};
+use crate::compare::program::dependency::{Declared, Dependencies};
+use crate::compare::program::scalar::Role;
 use staunch_host::Event;
-use staunch_ir::effects::{Rules, effects};
-use staunch_ir::{FieldId, StructId};
 use std::collections::{HashMap, HashSet};
-use std::ops::Range;
-
-type Declared = (StructId, FieldId);
 
 #[derive(Debug)]
 pub struct Tolerance {
@@ -47,10 +43,7 @@ impl Tolerance {
             events: Vec::new(),
             passing: Passing {
                 faults: [0, 1].map(|side: usize| accepted.takes(Kind::Fault, pair.sides[side].dialect.name(), None)),
-                is_faultless: pair
-                    .sides
-                    .iter()
-                    .all(|it| effects(&it.program, &Rules::PLAIN).iter().all(|routine| !routine.faults)),
+                is_faultless: pair.is_faultless(),
                 ..Passing::default()
             },
             beside: Vec::new(),
@@ -260,12 +253,4 @@ impl Builder<'_> {
         let idle = follows.iter().filter(|it| kept.is_empty() || !decides(it));
         idle.copied().collect()
     }
-}
-
-fn bytes_of(scalars: &Scalars, fields: &HashSet<Declared>) -> Vec<Range<usize>> {
-    let is_in = |it: Option<Declared>| it.is_some_and(|it| fields.contains(&it));
-    let variables = scalars.all.iter().filter(|it| it.role != Role::Input && is_in(it.field));
-    let blocks = scalars.blocks.iter().filter(|it| is_in(it.field));
-    let variables = variables.map(|it| it.offset..it.offset + it.size);
-    variables.chain(blocks.map(|it| it.offset..it.offset + it.block.info().size)).collect()
 }

@@ -64,6 +64,9 @@ impl World {
         if alphabet.vectors.is_empty() {
             return Err("the assumptions allow no combination of the values of inputs that are tried".to_owned());
         }
+        for (input, choice) in pair.inputs.iter_mut().zip(&alphabet.choices) {
+            input.range = choice.range;
+        }
         let cycle = pair.shortest_cycle();
         let wait = facts.iter().flat_map(|it| it.times.last().copied()).max().unwrap_or(0);
         let longest = usize::try_from(wait / pair.shortest_cycle().max(1)).unwrap_or(usize::MAX);

@@ -66,7 +66,13 @@ pub fn beyond_accepted(pair: &mut Pair, world: &World, args: &Compare, findings:
 const WITHOUT_RUN: u64 = 4;
 
 /// Where the difference needs STOP -> RUN: what differs without it.
-pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Verdict) -> Option<WithoutRun> {
+pub fn without_run(
+    pair: &mut Pair,
+    world: &World,
+    args: &Compare,
+    verdict: &Verdict,
+    findings: &mut Findings,
+) -> Option<WithoutRun> {
     let Verdict::Differs { trace: Some(trace), .. } = verdict else { return None };
     if !trace.steps().any(|it| it.event == Some(Event::Run)) {
         return None;
@@ -80,6 +86,7 @@ pub fn without_run(pair: &mut Pair, world: &World, args: &Compare, verdict: &Ver
             let rows = pair.replay(&steps);
             let differences = rows.last().map_or_else(Vec::new, |it| pair.differences(it));
             let cause = pitfall::cause(pair, &rows, &differences, &world.habits);
+            findings.explain(pair, &rows, &cause, trace);
             let names: Vec<&str> = differences.iter().take(3).map(|it| pair.path(*it)).collect();
             let scans = if rows.len() == 1 { "1 scan".to_owned() } else { format!("{} scans", rows.len()) };
             let counting = cause.counting(pair);

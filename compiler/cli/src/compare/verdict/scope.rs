@@ -4,7 +4,7 @@ use super::Verdict;
 use crate::compare::difference::pitfall;
 use crate::compare::inputs::alphabet;
 use crate::compare::inputs::choice::Covered;
-use crate::compare::pair::{Input, Pair};
+use crate::compare::pair::{Input, Matched, Pair};
 use crate::compare::program::scalar::Instance;
 use crate::compare::search::progress::Outcome;
 use crate::compare::search::world::World;
@@ -20,6 +20,9 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     let compared: Vec<&str> =
         compared.filter(|it| it.0.covered == Some(Covered::Compared)).map(|it| pair.path(it.1.scalars)).collect();
     let mut text = format!("every reachable state was seen ({} scans)", outcome.scans);
+    if !pair.idle.is_empty() {
+        text.push_str(" of all that decides what is compared");
+    }
     if pair.are_settled {
         text.push_str(", with all counts past the values that they are compared with taken as one state");
     }
@@ -43,7 +46,7 @@ pub fn every_state(pair: &Pair, world: &World, outcome: &Outcome) -> String {
     }
     from_outside(&mut text, pair);
     assumed(&mut text, world);
-    for limit in [kept(pair), of_one(pair)].into_iter().flatten() {
+    for limit in [kept(pair), of_one(pair), unlike(pair)].into_iter().flatten() {
         let _ = write!(text, "; {limit}");
     }
     text
@@ -87,6 +90,16 @@ fn kept(pair: &Pair) -> Option<String> {
 fn of_one(pair: &Pair) -> Option<String> {
     let names = listed(pair.only_one_has(|_| true).into_iter().map(|it| it.1.to_owned()))?;
     Some(format!("not compared, since only one program has it: {names}"))
+}
+
+/// What is not compared because it means something else on the other system.
+fn unlike(pair: &Pair) -> Option<String> {
+    let both = |it: &Matched| {
+        let of = |side: usize| format!("{} of {}", pair.scalar(side, it[side]).path, pair.sides[side].dialect.name());
+        format!("{} with {}", of(0), of(1))
+    };
+    let names = listed(pair.unlike.iter().map(both))?;
+    Some(format!("not compared, since they mean different things (trap 4): {names}"))
 }
 
 /// What may follow from accepted findings, and is not compared once they were seen.
@@ -209,7 +222,7 @@ pub fn not_found(pair: &Pair, world: &World, outcome: &Outcome) -> Verdict {
     }
     left.extend(world.unfollowed.iter().cloned());
     left.extend(pair.ended.map(|it| after(pair, it)));
-    left.extend(kept(pair).into_iter().chain(of_one(pair)));
+    left.extend([kept(pair), of_one(pair), unlike(pair)].into_iter().flatten());
     let beside = world.tolerance.iter().flat_map(|it| it.beside.iter().cloned());
     left.extend(listed(beside).map(|it| format!("the effect of {it}, declared together with an accepted difference")));
     Verdict::NotFound { tried, left }

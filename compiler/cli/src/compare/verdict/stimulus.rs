@@ -99,7 +99,7 @@ fn name_columns(pair: &mut Pair, args: &Compare) {
     };
     let column = |name: String| {
         let scalars = [place(&pair.sides[0], &name)?, place(&pair.sides[1], &name)?];
-        Some(Input { scalars, initial: Value::Bool(false), texts: Vec::new(), named: 0 })
+        Some(Input { scalars, initial: Value::Bool(false), range: None, texts: Vec::new(), named: 0 })
     };
     let found: Vec<Input> = names.filter_map(column).collect();
     if !found.is_empty() {

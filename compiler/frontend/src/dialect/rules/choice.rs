@@ -121,7 +121,7 @@ impl ByZero {
     pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Faults => "a fault",
-            Self::Reported => "the dividend; of integers, it is reported",
+            Self::Reported => "of integers the dividend, of reals infinite or not a number; it is reported",
             Self::GivesZero => "0",
         }
     }
@@ -148,6 +148,7 @@ impl Choice for ShrOfSigned {
 /// What a number counts that becomes a TIME, or a TIME that becomes a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeAsNumber {
+    Microseconds,
     Milliseconds,
     WholeMilliseconds,
     CutMilliseconds,
@@ -159,6 +160,7 @@ impl Choice for TimeAsNumber {
 
     fn words(self) -> &'static str {
         match self {
+            Self::Microseconds => "microseconds",
             Self::Milliseconds => "milliseconds",
             Self::WholeMilliseconds => "milliseconds; of a REAL whole ones",
             Self::CutMilliseconds => "milliseconds; of a REAL the fraction is cut",
@@ -279,6 +281,7 @@ impl Choice for RealOfText {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPositions {
     Nearest,
+    OfLibrary,
     Empty,
 }
 
@@ -288,6 +291,7 @@ impl Choice for TextPositions {
     fn words(self) -> &'static str {
         match self {
             Self::Nearest => "acts as P = 1, L = 0",
+            Self::OfLibrary => "as its library of standard functions",
             Self::Empty => "an empty text",
         }
     }
@@ -462,6 +466,7 @@ impl Choice for CaseSelector {
 pub enum TimeUnit {
     Nanoseconds,
     SecondsAndNanoseconds,
+    Microseconds,
     Milliseconds,
     SignedMilliseconds,
 }
@@ -475,6 +480,7 @@ impl Choice for TimeUnit {
             Self::SecondsAndNanoseconds => {
                 "32 bits of seconds with a sign, and nanoseconds: a day after `T#24855d` is `T#-24854d6h28m16s`"
             }
+            Self::Microseconds => "64 bits of microseconds with a sign: `T#3us / 2` is `T#1us`",
             Self::Milliseconds => {
                 "32 bits of milliseconds without a sign: `t - T#1ms` of a `t` that is 0 is `T#49d17h2m47s295ms`, `T#5ms / 2` is `T#2ms`"
             }
@@ -522,6 +528,26 @@ impl Choice for LoopLimit {
             Self::EachTurn => "read in each turn",
             Self::EachTurnUpward => {
                 "read in each turn; it counts down only by a negative number, not by a variable or CONSTANT"
+            }
+        }
+    }
+}
+
+/// Which arrays start with the values that their declarations give them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArrayValues {
+    Everywhere,
+    InBlocks,
+}
+
+impl Choice for ArrayValues {
+    const RULE: &'static str = "initial values of arrays";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::Everywhere => "applied",
+            Self::InBlocks => {
+                "applied in FUNCTION_BLOCKs and FUNCTIONs; in a PROGRAM, a STRUCT and VAR_GLOBAL the elements are 0 (lint W0415)"
             }
         }
     }

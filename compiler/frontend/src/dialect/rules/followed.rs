@@ -1,12 +1,12 @@
 //! The choices of one dialect, each with what shows it.
 
 use super::choice::{
-    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
+    ArrayValues, ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed,
+    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
     RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
-use staunch_runtime::time::{MILLISECOND, SECOND};
-use staunch_runtime::{Elementary, Value};
+use staunch_runtime::time::{MICROSECOND, MILLISECOND, SECOND};
+use staunch_runtime::{Elementary, Time, Value};
 
 /// How one dialect computes.
 #[derive(Debug)]
@@ -38,6 +38,7 @@ pub struct Rules {
     pub loop_limit: Followed<LoopLimit>,
     pub time_unit: Followed<TimeUnit>,
     pub long_time: Followed<LongTime>,
+    pub array_values: Followed<ArrayValues>,
 }
 
 impl Rules {
@@ -163,22 +164,28 @@ impl Rules {
     pub fn limits(&self, duration: Elementary) -> Option<(i128, i128)> {
         let (counted, unit, parts) = match (duration, self.time_unit.choice) {
             (Elementary::Time, TimeUnit::SecondsAndNanoseconds) => (Elementary::Dint, SECOND, SECOND - 1),
-            (Elementary::Time, TimeUnit::Milliseconds | TimeUnit::SignedMilliseconds) => {
-                (self.milliseconds()?, MILLISECOND, 0)
-            }
+            (Elementary::Time, _) if let Some(count) = self.time_count() => (count.ty, count.unit, 0),
             _ => (duration, 1, 0),
         };
-        let (least, greatest) = counted.repr().range()?;
-        Some((least * i128::from(unit), greatest * i128::from(unit) + i128::from(parts)))
+        let unit = i128::from(unit);
+        let (mut least, mut greatest) = counted.repr().range()?;
+        if unit > 1 {
+            // Here it is kept in nanoseconds.
+            let (first, last) = Elementary::Lint.repr().range()?;
+            (least, greatest) = (least.max(first / unit), greatest.min(last / unit));
+        }
+        Some((least * unit, greatest * unit + i128::from(parts)))
     }
 
-    /// The integer type whose number of milliseconds a TIME is, where it is not of nanoseconds.
-    pub const fn milliseconds(&self) -> Option<Elementary> {
-        match self.time_unit.choice {
-            TimeUnit::Nanoseconds | TimeUnit::SecondsAndNanoseconds => None,
-            TimeUnit::Milliseconds => Some(Elementary::Udint),
-            TimeUnit::SignedMilliseconds => Some(Elementary::Dint),
-        }
+    /// What a TIME is a number of, where that is not nanoseconds.
+    pub const fn time_count(&self) -> Option<TimeCount> {
+        let (ty, unit, words) = match self.time_unit.choice {
+            TimeUnit::Nanoseconds | TimeUnit::SecondsAndNanoseconds => return None,
+            TimeUnit::Microseconds => (Elementary::Lint, MICROSECOND, "microseconds"),
+            TimeUnit::Milliseconds => (Elementary::Udint, MILLISECOND, "milliseconds"),
+            TimeUnit::SignedMilliseconds => (Elementary::Dint, MILLISECOND, "milliseconds"),
+        };
+        Some(TimeCount { ty, unit, words })
     }
 
     /// Integers without a type are DINTs together, and wrap.
@@ -189,6 +196,15 @@ impl Rules {
     pub const fn writes_plus(&self) -> bool {
         matches!(self.integer_text.choice, IntegerText::SignAndDigits)
     }
+}
+
+/// A whole number of units of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TimeCount {
+    pub ty: Elementary,
+    /// In nanoseconds.
+    pub unit: Time,
+    pub words: &'static str,
 }
 
 /// A choice, and the page or program that shows that the system makes it.

@@ -1,6 +1,6 @@
 //! What is known of a system and not followed, and what its documents leave open.
 
-use super::systems::{MATIEC, SIEMENS_DATES};
+use super::systems::{LOGIX_TIMES, MATIEC, SIEMENS_DATES};
 use crate::dialect::Dialect;
 use staunch_ir::{Part, Use};
 use staunch_runtime::{Class, Elementary};
@@ -148,6 +148,12 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         evidence: "CODESYS help, \"Conversion: DATE, DT, TOD\"",
         uses: Use::Conversion(Class::Date, Class::String),
     },
+    not_followed(
+        Dialect::Logix,
+        Elementary::Dt,
+        "64 bits of microseconds since 1970: it has no parts of one",
+        LOGIX_TIMES,
+    ),
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
 ];
 
@@ -247,7 +253,7 @@ pub const EDGES: &[Edge] = &[
         "`SHL`, `SHR` of a constant without a type",
         "of the type of its place",
         "CODESYS help, \"SHL\": nothing; Beckhoff, TwinCAT 2, \"SHL\": of the smallest type that holds it, so that `SHL(16#F0, 4)` is 0",
-        &[Use::Function("SHL"), Use::Function("SHR")],
+        &[Use::Part(Part::ShiftOfConstant)],
     ),
     edge(
         Dialect::Codesys,

@@ -1,8 +1,8 @@
 //! The rules of each system, with the page or program that shows them.
 
 use super::choice::{
-    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed, Literals,
-    LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
+    ArrayValues, ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed,
+    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
     RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
 };
 use super::followed::{Followed, Rules};
@@ -35,6 +35,7 @@ pub(super) const IEC: Rules = Rules {
     loop_limit: follows(LoopLimit::Once, "IEC 61131-3, 7.3.3.4.2: the body changes none of them"),
     time_unit: follows(TimeUnit::Nanoseconds, "IEC 61131-3, 6.3.3.2: left to the implementer"),
     long_time: follows(LongTime::Signed, "IEC 61131-3, table 10: 64 bits of nanoseconds"),
+    array_values: follows(ArrayValues::Everywhere, "IEC 61131-3, 6.5.1.3"),
 };
 
 /// The choice of another dialect, where no page of the vendor says anything.
@@ -70,6 +71,7 @@ pub(super) const CSCAPE: Rules = Rules {
     loop_limit: undocumented(IEC.loop_limit),
     time_unit: undocumented(IEC.time_unit),
     long_time: undocumented(IEC.long_time),
+    array_values: undocumented(IEC.array_values),
 };
 
 pub(super) const CODESYS: Rules = Rules {
@@ -113,6 +115,7 @@ pub(super) const OPENPLC: Rules = Rules {
     limit_crossed: follows(LimitCrossed::Minimum, MATIEC),
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),
+    text_positions: follows(TextPositions::OfLibrary, MATIEC),
     literals: follows(Literals::OfC, MATIEC),
     second_bool: follows(SecondBool::IfItDecides, MATIEC),
     case_selector: follows(CaseSelector::Cut, MATIEC),
@@ -143,6 +146,14 @@ pub(super) const OPENPLC4: Rules = Rules {
     date_as_number: follows(DateAsNumber::AsStored, "STruC++ 0.6.1, run: DATE_TO_DINT(D#1999-03-01) is 10651"),
     limit_crossed: follows(LimitCrossed::MinimumFirst, "STruC++ 0.6.1, run: LIMIT(7, 1, 1) is 7"),
     functions: follows(Functions::OfStrucpp, "STruC++ 0.6.1, run: INSERT('ABC', 'X', 1) is 'XABC'"),
+    text_positions: follows(
+        TextPositions::OfLibrary,
+        "STruC++ 0.6.1, run: REPLACE('abcdef', 'XY', -1, 3) is 'abXYbcdef'",
+    ),
+    array_values: follows(
+        ArrayValues::InBlocks,
+        "STruC++ 0.6.1, run: `a : ARRAY[0..1] OF INT := [5, 6]` of a PROGRAM is 0, 0",
+    ),
     literals: follows(Literals::OfC, "STruC++ 0.6.1, run: `REAL#0.1 - 0.30000001` is -0.200000003"),
     second_bool: follows(SecondBool::Always, "STruC++ 0.6.1: C++'s `&` and `|`"),
     loop_limit: follows(LoopLimit::EachTurnUpward, "STruC++ 0.6.1, run: `FOR i := 5 TO 1 BY STEP` does not run"),
@@ -163,6 +174,8 @@ pub(super) const LOGIX: Rules = Rules {
     sqrt_of_negative: follows(SqrtOfNegative::RootOfMagnitude, "1756-RM003, \"Square Root\""),
     modulo_of_reals: follows(ModuloOfReals::Remainder, "1756-RM003N, p. 279, \"Modulo\""),
     literals: follows(Literals::Immediate, "1756-RM006K, p. 545: immediate values are DINTs"),
+    time_as_number: follows(TimeAsNumber::Microseconds, LOGIX_TIMES),
+    time_unit: follows(TimeUnit::Microseconds, LOGIX_TIMES),
     ..IEC
 };
 
@@ -180,6 +193,8 @@ pub(super) const SIEMENS: Rules = Rules {
     time_unit: follows(TimeUnit::SignedMilliseconds, SIEMENS_DATES),
     ..IEC
 };
+
+pub(super) const LOGIX_TIMES: &str = "Rockwell, Logix Designer help, \"Time and date data types\"";
 
 pub(super) const SIEMENS_DATES: &str = "S7-1200 manual V4.2, table 5-32";
 
