@@ -50,10 +50,26 @@ pub enum Part {
     StoredOverflow,
     /// An index outside of its array that is reached. No program notes it.
     Index,
+    /// An enumeration whose default, or whose first number, is not 0.
+    EnumStart,
+    /// A subrange without 0.
+    SubrangeStart,
+    /// A TYPE that is another name of an integer or of bits, or a subrange.
+    NamedNumber,
+    /// A TYPE that is a STRING of a length, or an array of them.
+    NamedText,
+    /// A VAR_OUTPUT of a FUNCTION or METHOD.
+    FunctionOutput,
+    /// An input of a FUNCTION with an initial value.
+    FunctionDefault,
+    /// An operand that another operand changes.
+    EvaluationOrder,
+    /// A VAR_IN_OUT of a FUNCTION_BLOCK that is given what is global, or what another is given. No program notes it.
+    InOutCopied,
 }
 
 impl Part {
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 22] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -68,6 +84,14 @@ impl Part {
         Self::Overflow,
         Self::StoredOverflow,
         Self::Index,
+        Self::EnumStart,
+        Self::SubrangeStart,
+        Self::NamedNumber,
+        Self::NamedText,
+        Self::FunctionOutput,
+        Self::FunctionDefault,
+        Self::EvaluationOrder,
+        Self::InOutCopied,
     ];
 
     /// In words, for tables and messages.
@@ -87,6 +111,14 @@ impl Part {
             Self::Overflow => "signed overflow",
             Self::StoredOverflow => "a DINT or LINT that passes its range",
             Self::Index => "an index outside of its array",
+            Self::EnumStart => "an enumeration that does not start with 0",
+            Self::SubrangeStart => "a subrange without 0",
+            Self::NamedNumber => "a TYPE that is an integer or bits",
+            Self::NamedText => "a STRING of a length in a TYPE or an array",
+            Self::FunctionOutput => "VAR_OUTPUT of a FUNCTION or METHOD",
+            Self::FunctionDefault => "an initial value of an input of a FUNCTION",
+            Self::EvaluationOrder => "an operand that another operand changes",
+            Self::InOutCopied => "a VAR_IN_OUT for what is global or given twice",
         }
     }
 }

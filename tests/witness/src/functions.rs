@@ -452,7 +452,9 @@ impl<'a> Machine<'a> {
         }
         let real = from.is_real() || to.is_real();
         let wide = if real { Elementary::Lreal } else { Elementary::Lint };
-        let factor = in_repr(Scalar::I64(unit(if from.is_time() { from } else { to })), wide).as_scalar()?;
+        let time = if from.is_time() { from } else { to };
+        let of_logix = time == Elementary::Time && self.declared.family == Family::Logix;
+        let factor = in_repr(Scalar::I64(if of_logix { 1000 } else { unit(time) }), wide).as_scalar()?;
         match (from.is_time(), to.is_time()) {
             (true, false) => {
                 let count = self.applied("DIV", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;

@@ -58,9 +58,16 @@ impl<'a> Machine<'a> {
         asked: Option<&Type<'a>>,
     ) -> Outcome<(Value<'a>, Value<'a>)> {
         match (untyped(left), untyped(right)) {
+            // NOT of a number without a type has that of the bits beside it.
+            (None, None) if is_not_of_number(left) && asked.is_none() => {
+                let b = self.value(frame, right, asked)?;
+                let a = self.value(frame, left, Some(&b.ty.clone()))?;
+                Ok((a, b))
+            }
             (None, None) => {
                 let a = self.value(frame, left, asked)?;
                 let beside = match a.ty.base() {
+                    Some(_) if is_not_of_number(right) && asked.is_none() => Some(a.ty.clone()),
                     Some(ty) if ty.is_integer() || ty.is_real() => Some(a.ty.clone()),
                     _ => asked.cloned(),
                 };
@@ -154,17 +161,24 @@ impl<'a> Machine<'a> {
         }
         let operands = [in_repr(time.as_scalar()?, wide).as_scalar()?, in_repr(by.as_scalar()?, wide).as_scalar()?];
         let scaled = in_repr(self.applied(name(op), wide, &operands, at)?.as_scalar()?, ty);
-        Ok(scaled)
+        if self.declared.family == Family::Logix { self.kept(scaled) } else { Ok(scaled) }
     }
 
     pub(crate) fn counts_milliseconds(&self) -> bool {
         matches!(self.declared.family, Family::Codesys | Family::S7)
     }
 
-    /// What CODESYS and S7 keep of a TIME.
+    /// What CODESYS, S7 and Logix keep of a TIME.
     pub(crate) fn kept(&self, value: Value<'a>) -> Outcome<Value<'a>> {
         if value.ty.elementary() == Some(Elementary::Ltime) && self.is_codesys() && value.as_integer()? < 0 {
             return unknown("an LTIME of CODESYS beyond 292 years");
+        }
+        if value.ty.elementary() == Some(Elementary::Time) && self.declared.family == Family::Logix {
+            // Whole microseconds.
+            return match i64::try_from(value.as_integer()? / 1000 * 1000) {
+                Ok(it) => Ok(Value::scalar(Elementary::Time, Scalar::I64(it))),
+                Err(_) => unknown("a TIME"),
+            };
         }
         if value.ty.elementary() != Some(Elementary::Time) || !self.counts_milliseconds() {
             return Ok(value);
@@ -316,6 +330,10 @@ impl Machine<'_> {
             }
         }
     }
+}
+
+fn is_not_of_number(expr: &Expr<'_>) -> bool {
+    matches!(&expr.bare().kind, ExprKind::Unary(UnaryOp::Not, inner) if untyped(inner).is_some())
 }
 
 /// Nanoseconds as 32 bits of milliseconds: with a sign in S7, without one in CODESYS.

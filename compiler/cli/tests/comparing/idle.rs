@@ -63,6 +63,19 @@ METHOD PUBLIC is_kept : BOOL is_kept := kept; END_METHOD
 o := i; v := i;
 END_FUNCTION_BLOCK
 TYPE s : STRUCT a, b : BOOL; END_STRUCT; END_TYPE
+INTERFACE is_told METHOD tell : BOOL END_METHOD END_INTERFACE
+FUNCTION_BLOCK teller IMPLEMENTS is_told
+VAR told : BOOL; END_VAR
+METHOD PUBLIC tell : BOOL tell := told; END_METHOD
+METHOD PUBLIC hear VAR_INPUT k : BOOL; END_VAR THIS.told := k; END_METHOD
+END_FUNCTION_BLOCK
+VAR_GLOBAL shared : BOOL; END_VAR
+FUNCTION swap : BOOL VAR_IN_OUT a, b : BOOL; END_VAR VAR t : BOOL; END_VAR t := a; a := b; b := t; swap := t; END_FUNCTION
+FUNCTION_BLOCK outer
+VAR_INPUT i : BOOL; END_VAR VAR_OUTPUT o : BOOL; END_VAR
+VAR inner : CTU; before : BOOL; END_VAR
+inner(CU := i AND NOT before, PV := 1); before := i; o := inner.Q;
+END_FUNCTION_BLOCK
 FUNCTION g : BOOL VAR_INPUT i : BOOL; END_VAR g := i; END_FUNCTION
 FUNCTION h : INT VAR_INPUT i : BOOL; END_VAR VAR_OUTPUT o : BOOL; END_VAR IF i THEN o := TRUE; RETURN; END_IF; o := FALSE; END_FUNCTION
 ";
@@ -92,6 +105,16 @@ FUNCTION h : INT VAR_INPUT i : BOOL; END_VAR VAR_OUTPUT o : BOOL; END_VAR IF i T
         ("r : REF_TO BOOL; a, b : BOOL;", "a := TRUE; r := REF(b); IF c.Q THEN r := REF(a); END_IF; z := r^;"),
         ("r : REF_TO BOOL; a : BOOL;", "r := REF(a); r^ := c.Q; z := a;"),
         ("w : WORD;", "w.%X3 := c.Q; z := w = 8;"),
+        ("u : f; b : BOOL;", "u(i := c.Q, v := b, o => z);"),
+        ("u : teller; i : is_told;", "i := u; u.hear(c.Q); z := i.tell();"),
+        ("", "shared := c.Q; z := shared;"),
+        ("a, b, r : BOOL;", "a := c.Q; b := FALSE; r := swap(a, b); z := b;"),
+        ("a, b, r : BOOL;", "a := c.Q; z := swap(a, b);"),
+        ("u : outer;", "u(i := c.Q); z := u.o;"),
+        ("us : ARRAY[0..1] OF outer;", "us[1](i := c.Q); z := us[1].o;"),
+        ("t : ARRAY[0..1] OF s;", "t[1].a := c.Q; z := t[1].a;"),
+        ("n, i : INT;", "n := 0; FOR i := 1 TO SEL(c.Q, 0, 2) DO n := n + 1; END_FOR; z := n = 2;"),
+        ("e : R_TRIG; l : SR;", "e(CLK := c.Q); l(S1 := e.Q, R := FALSE); z := l.Q1;"),
         ("k : STRING[4];", "IF c.Q THEN k := 'ok'; END_IF; z := k = 'ok';"),
     ];
     for (at, (variables, body)) in ways.iter().enumerate() {

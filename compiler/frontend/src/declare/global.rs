@@ -12,7 +12,7 @@ impl<'s> Declarations<'s> {
     pub(super) fn global_variable(&mut self, at: usize) -> Option<Variable<'s>> {
         let GlobalSlot { name, block, decl, .. } = self.globals[at];
         let reported = self.log.diagnostics.len();
-        let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text, Within::Others)?;
+        let resolved = self.declared_type(decl, &Rc::new(Scope::default()), name.text, Within::Program)?;
         if block.constant.is_some() && self.log.has_errors_since(reported) {
             return None;
         }

@@ -8,7 +8,7 @@ use crate::types::declarations::Declarations;
 use crate::types::signature::Signature;
 use crate::types::table::Resolved;
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{BlockId, Type};
+use staunch_ir::{BlockId, Part, Type};
 use std::rc::Rc;
 
 impl<'s> Declarations<'s> {
@@ -68,6 +68,12 @@ impl<'s> Declarations<'s> {
         self.check_has_value(pou, block, decl, resolved.ty);
         if let Some(first) = decl.names.first() {
             self.check_retain(block, resolved.ty, *first);
+        }
+        if pou.kind.is_function() && block.kind == VarKind::Output {
+            self.note_part(Part::FunctionOutput, decl.span);
+        }
+        if pou.kind.is_function() && block.kind == VarKind::Input && decl.initial.is_some() {
+            self.note_part(Part::FunctionDefault, decl.span);
         }
         let starts_anew = block.kind == VarKind::Temp || (pou.kind.is_function() && block.kind == VarKind::Var);
         if starts_anew && let Some(id) = self.remembers(resolved.ty) {

@@ -2,7 +2,7 @@
 
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
-use crate::dialect::rules::ArrayValues;
+use crate::dialect::rules::InitialValues;
 use crate::dialect::{self, Dialect, missing};
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
 use crate::names::{Entry, Found, Meaning, Sense};
@@ -15,8 +15,8 @@ use crate::types::table::{PendingReference, Resolved, instance_of, scalar_initia
 use crate::{Code, Diagnostic, Span};
 use rustc_hash::FxHashMap;
 use staunch_ir::{
-    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, RefKind, RefType, ReferenceId, StringType,
-    Type, Value,
+    Array, ArrayId, BoundsId, Const, Elementary, Enum, EnumId, Enumerator, Part, RefKind, RefType, ReferenceId,
+    StringType, Type, Use, Value,
 };
 use staunch_runtime::Family;
 use std::rc::Rc;
@@ -74,13 +74,14 @@ const FOREIGN: [(&str, &str); 24] = [
 pub(super) enum Within {
     /// A FUNCTION_BLOCK, a FUNCTION or what is in one.
     Pou,
-    /// A PROGRAM, a structure, global variables.
-    Others,
+    Structure,
+    /// A PROGRAM, or global variables.
+    Program,
 }
 
 impl Within {
     pub(super) fn of(pou: &ast::Pou<'_>) -> Self {
-        if pou.kind == ast::PouKind::Program { Self::Others } else { Self::Pou }
+        if pou.kind == ast::PouKind::Program { Self::Program } else { Self::Pou }
     }
 }
 
@@ -124,6 +125,7 @@ impl<'s> Declarations<'s> {
             let names_values = matches!(decl.ty.kind, TypeKind::Enum { base: Some(_), .. });
             self.table.named_values.extend((names_values && !has("strict")).then_some(id));
         }
+        self.note_type(decl, resolved.ty);
         if let Some(initial) = &decl.initial {
             if self.has_flat_rows(&decl.ty, initial) {
                 return None;
@@ -131,6 +133,38 @@ impl<'s> Declarations<'s> {
             resolved.initial = self.initial(initial, &resolved, &scope)?;
         }
         Some(resolved)
+    }
+
+    /// Notes what other compilers make something else of.
+    fn note_type(&mut self, decl: &ast::TypeDecl<'s>, ty: Type) {
+        let is_named = matches!(decl.ty.kind, TypeKind::Named(_));
+        match ty {
+            Type::Enum(id) => {
+                let first = self
+                    .program
+                    .enumeration(id)
+                    .values
+                    .first()
+                    .and_then(|it| it.value.as_integer())
+                    .unwrap_or_default();
+                if decl.initial.is_some() || first != 0 {
+                    self.note_part(Part::EnumStart, decl.name.span);
+                }
+            }
+            Type::Subrange(..) => self.note_part(Part::NamedNumber, decl.name.span),
+            Type::Elementary(it) if is_named && (it.is_integer() || it.is_bits() && it != Elementary::Bool) => {
+                self.note_part(Part::NamedNumber, decl.name.span);
+            }
+            Type::String(_) if matches!(decl.ty.kind, TypeKind::String { .. }) => {
+                self.note_part(Part::NamedText, decl.name.span);
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn note_part(&mut self, part: Part, span: Span) {
+        let at = self.location(span);
+        self.program.uses.note(Use::Part(part), at);
     }
 
     /// The type of a declared variable, with the variable's own initial value.
@@ -157,14 +191,23 @@ impl<'s> Declarations<'s> {
 
     /// Whether the system does not apply the initial value of an array, which is reported.
     fn leaves_out(&mut self, decl: &ast::VarDecl<'s>, initial: &ast::Initial<'s>, ty: Type, within: Within) -> bool {
-        let is_left_out = within == Within::Others
-            && matches!(ty, Type::Array(_))
-            && self.dialect(initial.span).rules().array_values.choice == ArrayValues::InBlocks;
+        let is_computed = matches!(&initial.kind, ast::InitialKind::Value(it) if !is_plain(it));
+        let is_left_out = match within {
+            Within::Pou => false,
+            Within::Structure => matches!(ty, Type::Array(_)),
+            Within::Program => matches!(ty, Type::Array(_)) || is_computed && matches!(ty, Type::Elementary(_)),
+        };
+        let is_left_out =
+            is_left_out && self.dialect(initial.span).rules().initial_values.choice == InitialValues::OfStrucpp;
         if let (true, Some(name)) = (is_left_out, decl.names.first()) {
             self.report(
-                Diagnostic::new(Code::W0415, initial.span, format!("`{}` does not start with these values", name.text))
-                    .label("STruC++ 0.6.1 applies initial values of arrays in FUNCTION_BLOCKs and FUNCTIONs only")
-                    .help("assign them in the first scan, or declare the array in a FUNCTION_BLOCK"),
+                Diagnostic::new(
+                    Code::W0415,
+                    initial.span,
+                    format!("`{}` does not start with this in OpenPLC", name.text),
+                )
+                .label("here STruC++ 0.6.1 leaves out arrays and expressions, and takes a number or a name")
+                .help("assign it in the first scan, or declare it in a FUNCTION_BLOCK"),
             );
         }
         is_left_out
@@ -481,6 +524,9 @@ impl<'s> Declarations<'s> {
             return None;
         }
         let ty = Type::Subrange(made_of, self.intern_bounds(bounds));
+        if !(bounds.0..=bounds.1).contains(&0) {
+            self.note_part(Part::SubrangeStart, low.span);
+        }
         let initial = self.least(ty);
         Some(Resolved { ty, initial })
     }
@@ -721,4 +767,15 @@ fn block_type(block: staunch_ir::BlockId) -> Resolved {
         Const::Zero
     };
     Resolved { ty: Type::Block(block), initial }
+}
+
+/// Whether a value is a literal, with a sign perhaps, or a name.
+fn is_plain(value: &ast::Expr<'_>) -> bool {
+    match &value.kind {
+        ast::ExprKind::Literal(_) | ast::ExprKind::Name(_) => true,
+        ast::ExprKind::Unary(ast::UnaryOp::Neg | ast::UnaryOp::Plus, inner) => {
+            matches!(inner.kind, ast::ExprKind::Literal(_))
+        }
+        _ => false,
+    }
 }

@@ -84,7 +84,7 @@ impl<'s> Declarations<'s> {
             let is_bit = self.is_bit(&decl.ty);
             let resolved = match is_bit {
                 true => self.initial_bit(decl, scope),
-                false => self.declared_type(decl, scope, owner, Within::Others),
+                false => self.declared_type(decl, scope, owner, Within::Structure),
             };
             let Some(resolved) = resolved.map(Rc::new) else {
                 complete = false;
@@ -169,7 +169,7 @@ impl<'s> Declarations<'s> {
             let is_bit = self.is_bit(&decl.ty);
             let resolved = match is_bit {
                 true => self.initial_bit(decl, scope),
-                false => self.declared_type(decl, scope, owner, Within::Others),
+                false => self.declared_type(decl, scope, owner, Within::Structure),
             };
             let resolved = resolved.map(Rc::new);
             let Some((resolved, part)) =

@@ -10,9 +10,10 @@ mod systems;
 use super::Dialect;
 use choice::Choice;
 pub use choice::{
-    ArrayValues, ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed,
-    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
-    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, InitialValues, IntegerText, LimitCrossed,
+    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, ProgramOrder, RealAndBits, RealOfText,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit,
+    ToBool,
 };
 pub use followed::{Followed, Rules};
 pub use not_followed::{EDGES, Edge, NOT_FOLLOWED, NotFollowed, is_followed, otherwise};
@@ -70,7 +71,8 @@ pub fn table() -> Vec<Row> {
         row(|it| &it.loop_limit),
         row(|it| &it.time_unit),
         row(|it| &it.long_time),
-        row(|it| &it.array_values),
+        row(|it| &it.initial_values),
+        row(|it| &it.program_order),
     ]
 }
 

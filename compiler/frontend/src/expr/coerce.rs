@@ -1,6 +1,6 @@
 //! Implicit conversions: they only widen. What needs a function, the message names.
 
-use super::checker::Checker;
+use super::checker::{Checker, Context};
 use super::operand::Operand;
 use crate::types::coercion::{as_number, widens};
 use crate::{Code, Diagnostic, Span, ast};
@@ -49,6 +49,15 @@ impl<'s> Checker<'_, 's> {
             }
             (operand @ Operand::Promoted(..), _) => self.coerce(operand.cut(), to, span),
             (Operand::Typed(expr), _) => self.coerce_typed(expr.read(), to, span),
+            // In Logix a real is rounded where an integer is wanted, an immediate value too (1756-RM006K, p. 544).
+            (literal @ Operand::Real { .. }, Type::Elementary(ty))
+                if ty.is_integer()
+                    && self.context == Context::Body
+                    && self.decl.dialect(span).has_bits_of_integers() =>
+            {
+                let real = self.literal_as(&literal, Elementary::Real, span)?;
+                self.coerce_typed(real, to, span)
+            }
             (literal, Type::Elementary(ty)) => self.literal_as(&literal, ty, span),
             (Operand::Integer(0), Type::Reference(_)) => Some(self.null(Some(to), span)),
             (Operand::Integer(number), Type::Enum(id)) if self.is_strict_value(id, number, span) => {

@@ -11,6 +11,7 @@ use staunch_ir::{
     ArrayId, Conversion, Elementary, Expr, ExprKind, Local, LocalId, Location, Op, Place, Projection, Root, Statement,
     Type, Value,
 };
+use staunch_ir::{Part, Use};
 
 /// What is evaluated where it is written, and used later.
 #[derive(Clone, Debug)]
@@ -76,6 +77,9 @@ impl Checker<'_, '_> {
         let hoisted = self.block.split_off(mark);
         if !hoisted.is_empty() {
             for expr in done {
+                if self.changes(&hoisted, expr) {
+                    self.decl.program.uses.note(Use::Part(Part::EvaluationOrder), expr.at);
+                }
                 self.save_parts(expr, &|this, it| this.can_fault(it) || this.changes(&hoisted, it));
             }
         }

@@ -2,5 +2,6 @@
 
 pub(crate) mod checks;
 pub(crate) mod hides;
+pub(crate) mod otherwise;
 pub(crate) mod result;
 pub(crate) mod unused;

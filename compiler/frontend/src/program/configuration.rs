@@ -5,6 +5,7 @@ use crate::declare::run::{
     Listing, declaration_of, has_in_outs, is_false, is_task, listing, property, unlisted, within,
 };
 use crate::dialect::Dialect;
+use crate::dialect::rules::ProgramOrder;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
@@ -453,9 +454,17 @@ impl<'s> Declarations<'s> {
             program: class,
             task: instance.task.map(|it| it.text.to_owned()),
             interval: timing.interval,
-            priority: timing.priority,
+            priority: self.priority_used(timing, instance.program.span),
         });
         Some(program)
+    }
+
+    /// MATIEC's C runs the PROGRAMs of a RESOURCE in the order of its text.
+    fn priority_used(&self, timing: Timing, at: Span) -> u32 {
+        match self.dialect(at).rules().program_order.choice {
+            ProgramOrder::ByPriority => timing.priority,
+            ProgramOrder::OfText => LOWEST_PRIORITY,
+        }
     }
 
     fn is_shared_run(&self, instance: &ast::ProgramInstance<'s>) -> bool {

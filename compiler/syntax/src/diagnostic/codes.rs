@@ -195,6 +195,7 @@ codes! {
     W0526 Warning "a body reads its own EN";
     W0527 Warning "a check that CODESYS calls implicitly";
     W0528 Warning "a diagram that other versions execute in another order";
+    W0529 Warning "the system does it otherwise";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";

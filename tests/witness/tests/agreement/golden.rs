@@ -62,7 +62,9 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     }
     let is_computed =
         || ["_TO_", "REAL", "TIME", "TON", "TOF", "TP", "F_TRIG", "F_EDGE", "STRING"].iter().any(|it| has(it));
-    if matches!(settings.options.dialect, Dialect::Openplc | Dialect::Openplc4) && is_computed() {
+    let starts_otherwise = || settings.options.dialect == Dialect::Openplc4 && (has(":= [") || has("NOT 16#"));
+    if matches!(settings.options.dialect, Dialect::Openplc | Dialect::Openplc4) && (is_computed() || starts_otherwise())
+    {
         return Ok(Verdict::Rejected("values of OpenPLC's C and C++".to_owned()));
     }
     let family = settings.options.dialect.family();

@@ -6,7 +6,10 @@ use super::moving_preset;
 use super::walked::Name;
 use staunch_frontend::Dialect;
 use staunch_frontend::rules::{EDGES, NOT_FOLLOWED, Part, Use};
-use staunch_ir::{Expr, ExprKind, Field, Program, Section, StatementKind, TextOp, Type, visit};
+use staunch_ir::{
+    Argument, Expr, ExprKind, Field, FieldId, Place, Program, Projection, Root, Section, StatementKind, TextOp, Type,
+    visit,
+};
 use staunch_runtime::Time;
 use staunch_runtime::time::MILLISECOND;
 use std::cell::OnceCell;
@@ -23,7 +26,8 @@ pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<N
         let is_moving = row.uses == Use::Part(Part::MovingPreset);
         let moving = || is_moving.then(|| moving_preset::line(program, starts)).flatten();
         let of_timers = || timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0);
-        let line = used(program, row.uses).or_else(of_timers).or_else(moving)?;
+        let copied = || (row.uses == Use::Part(Part::InOutCopied)).then(|| copied_in_out(program)).flatten();
+        let line = used(program, row.uses).or_else(of_timers).or_else(moving).or_else(copied)?;
         if harmless.has(row.uses) {
             return None;
         }
@@ -93,6 +97,33 @@ pub fn open(program: &Program, dialect: Dialect, starts: &HashMap<Name, Range>) 
         ))
     });
     found.collect()
+}
+
+fn first_field(place: &Place) -> Option<FieldId> {
+    match place.projections.first() {
+        Some(Projection::Field(field)) => Some(*field),
+        Some(Projection::Index { .. } | Projection::Deref { .. }) | None => None,
+    }
+}
+
+/// The first call of a FUNCTION_BLOCK that gives a VAR_IN_OUT what is global, or what it gives another.
+fn copied_in_out(program: &Program) -> Option<u32> {
+    let mut found: Option<u32> = None;
+    for routine in &program.routines {
+        visit::statements(&routine.body, &mut |statement| {
+            let StatementKind::Call { instance: Some(_), arguments, .. } = &statement.kind else { return };
+            let given = arguments.iter().filter_map(|it| match it {
+                Argument::Reference(place) => Some((place.root, first_field(place))),
+                Argument::Value(_) => None,
+            });
+            let given: Vec<_> = given.collect();
+            let is_twice = given.iter().enumerate().any(|(at, it)| given[..at].contains(it));
+            if is_twice || given.iter().any(|it| it.0 == Root::Globals) {
+                found = Some(found.map_or(statement.at.line, |it| it.min(statement.at.line)));
+            }
+        });
+    }
+    found
 }
 
 /// The first line that declares a timer, for what a timer does in such scans.

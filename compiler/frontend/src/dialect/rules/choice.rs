@@ -533,22 +533,40 @@ impl Choice for LoopLimit {
     }
 }
 
-/// Which arrays start with the values that their declarations give them.
+/// What starts with the value that its declaration gives it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ArrayValues {
+pub enum InitialValues {
     Everywhere,
-    InBlocks,
+    OfStrucpp,
 }
 
-impl Choice for ArrayValues {
-    const RULE: &'static str = "initial values of arrays";
+impl Choice for InitialValues {
+    const RULE: &'static str = "initial values";
 
     fn words(self) -> &'static str {
         match self {
             Self::Everywhere => "applied",
-            Self::InBlocks => {
-                "applied in FUNCTION_BLOCKs and FUNCTIONs; in a PROGRAM, a STRUCT and VAR_GLOBAL the elements are 0 (lint W0415)"
+            Self::OfStrucpp => {
+                "not applied to arrays in a PROGRAM, a STRUCT and VAR_GLOBAL, nor an expression in a PROGRAM and VAR_GLOBAL: these start with 0 (lint W0415)"
             }
+        }
+    }
+}
+
+/// Which PROGRAM of a RESOURCE runs first, where several are due.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProgramOrder {
+    ByPriority,
+    OfText,
+}
+
+impl Choice for ProgramOrder {
+    const RULE: &'static str = "order of PROGRAMs in a scan";
+
+    fn words(self) -> &'static str {
+        match self {
+            Self::ByPriority => "by the PRIORITY of their TASKs",
+            Self::OfText => "that of the RESOURCE's text, whatever the PRIORITY",
         }
     }
 }

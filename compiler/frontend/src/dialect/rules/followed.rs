@@ -1,9 +1,10 @@
 //! The choices of one dialect, each with what shows it.
 
 use super::choice::{
-    ArrayValues, ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed,
-    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
-    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, InitialValues, IntegerText, LimitCrossed,
+    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, ProgramOrder, RealAndBits, RealOfText,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit,
+    ToBool,
 };
 use staunch_runtime::time::{MICROSECOND, MILLISECOND, SECOND};
 use staunch_runtime::{Elementary, Time, Value};
@@ -38,7 +39,8 @@ pub struct Rules {
     pub loop_limit: Followed<LoopLimit>,
     pub time_unit: Followed<TimeUnit>,
     pub long_time: Followed<LongTime>,
-    pub array_values: Followed<ArrayValues>,
+    pub initial_values: Followed<InitialValues>,
+    pub program_order: Followed<ProgramOrder>,
 }
 
 impl Rules {

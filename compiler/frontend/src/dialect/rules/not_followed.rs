@@ -14,6 +14,14 @@ pub struct NotFollowed {
     pub evidence: &'static str,
     /// What a program has to have for the rule to matter.
     pub uses: Use,
+    /// A lint says it where a program uses it: few do, and to most it matters.
+    pub is_told: bool,
+}
+
+impl NotFollowed {
+    const fn told(self) -> Self {
+        Self { is_told: true, ..self }
+    }
 }
 
 /// Whether a dialect does as its system with this part of the language.
@@ -41,12 +49,14 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         what: "ET is a whole number of milliseconds, as every TIME; here it has the parts that the time of the scan has",
         evidence: "CODESYS help, \"TIME, LTIME\"",
         uses: Use::Part(Part::PartsOfMillisecond),
+        is_told: false,
     },
     NotFollowed {
         dialect: Dialect::Siemens,
         what: "ET is a whole number of milliseconds, as every TIME; here it has the parts that the time of the scan has",
         evidence: "S7-1200 manual, 11/2011, table 4-15",
         uses: Use::Part(Part::PartsOfMillisecond),
+        is_told: false,
     },
     of_matiec(Use::Type(Elementary::Time), PARTS),
     of_matiec(
@@ -87,7 +97,8 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_strucpp(
         Use::Conversion(Class::String, Class::Duration),
         "each part may be missing: STRING_TO_TIME('12') is T#12ms",
-    ),
+    )
+    .told(),
     of_strucpp(
         Use::Conversion(Class::Elementary, Class::Date),
         "a TOD may be negative, or longer than a day: INT_TO_TOD(-1); DT_TO_DATE and DT_TO_TOD leave the nanoseconds of the DT",
@@ -97,12 +108,14 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_strucpp(
         Use::Operator("-", Class::Date),
         "a DATE is a number of days, and the difference of two is that number in nanoseconds",
-    ),
+    )
+    .told(),
     of_strucpp(
         Use::Part(Part::Enable),
         "a statement with a call whose EN is FALSE is left out, so that its variable keeps its value; within an expression EN is \
          passed over, and a block's own input with that name is never set",
-    ),
+    )
+    .told(),
     of_strucpp(Use::Part(Part::Temp), "it keeps its value from call to call"),
     of_matiec(Use::Part(Part::ShiftPastWidth), SHIFTED),
     of_strucpp(Use::Part(Part::ShiftPastWidth), SHIFTED),
@@ -119,6 +132,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         what: "it is stored, and the program continues, unless the application has CheckRangeSigned and its like; here it is a fault",
         evidence: "CODESYS help, \"Subrange type\": only these functions check it at run time",
         uses: Use::Part(Part::Subrange),
+        is_told: false,
     },
     of_processor(Dialect::Openplc),
     of_processor(Dialect::Openplc4),
@@ -127,6 +141,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         what: "the target decides whether it is an exception; here it is a fault",
         evidence: "CODESYS help, \"DIV\", \"MOD\"",
         uses: Use::Part(Part::DivisionByZero),
+        is_told: false,
     },
     of_strucpp(Use::Part(Part::LimitOfType), ENDLESS),
     of_matiec(Use::Part(Part::LimitOfType), ENDLESS),
@@ -135,19 +150,44 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         what: ENDLESS,
         evidence: "CODESYS help, \"FOR\", \"C0266\"",
         uses: Use::Part(Part::LimitOfType),
+        is_told: false,
     },
     NotFollowed {
         dialect: Dialect::Siemens,
         what: "a timer keeps the PT that it started with",
         evidence: "S7-1200 manual, 11/2011, table 7-19",
         uses: Use::Part(Part::MovingPreset),
+        is_told: false,
     },
     NotFollowed {
         dialect: Dialect::Codesys,
         what: "the parts have no zeros before them: `D#1970-1-1`",
         evidence: "CODESYS help, \"Conversion: DATE, DT, TOD\"",
         uses: Use::Conversion(Class::Date, Class::String),
+        is_told: true,
     },
+    of_strucpp(Use::Part(Part::EnumStart), "a variable without an initial value starts with number 0, whatever the TYPE says").told(),
+    of_strucpp(Use::Part(Part::SubrangeStart), "a variable without an initial value starts with 0").told(),
+    of_strucpp(
+        Use::Part(Part::NamedNumber),
+        "its variables are C++'s integers: 30000 + 10000 into a DINT is 40000, NOT of bits is C++'s `!`, and one in a FUNCTION starts with anything",
+    ),
+    of_strucpp(Use::Part(Part::NamedText), "it holds 254 characters"),
+    of_strucpp(
+        Use::Part(Part::FunctionOutput),
+        "it is the caller's variable: it starts with what that holds, and keeps it where the body assigns nothing",
+    ),
+    of_strucpp(
+        Use::Part(Part::FunctionDefault),
+        "where a call names no input, those that it leaves out are 0 or FALSE",
+    ),
+    of_strucpp(
+        Use::Part(Part::EvaluationOrder),
+        "the right side is evaluated first: after `z := 5`, `z + Change(z)` adds what Change has made of `z`",
+    )
+    .told(),
+    of_strucpp(Use::Part(Part::InOutCopied), COPIED),
+    of_matiec(Use::Part(Part::InOutCopied), COPIED),
     not_followed(
         Dialect::Logix,
         Elementary::Dt,
@@ -168,6 +208,9 @@ const OVERFLOWN: &str = "C leaves it undefined, and the compiler and the process
 const OVERFLOWN_CPP: &str = "C++ leaves it undefined, and the compiler and the processor decide: on x86-64 `n + 1 > n` of a DINT may be \
                              TRUE with -O and is FALSE without, and its least number divided by -1 ends the program";
 
+const COPIED: &str =
+    "it is copied in before the call and back after it, each by itself: what the body writes to one shows in no other";
+
 const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
 
 const ENDLESS: &str = "the counter wraps, and the loop does not end";
@@ -182,11 +225,11 @@ const LAST_DIGIT: &str = "the C library's: the last digit of an LREAL may be ano
 const TOO_LONG: &str = "where the result is longer than the first text may be, the end of what is put in is dropped";
 
 const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
-    NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses }
+    NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses, is_told: false }
 }
 
 const fn of_strucpp(uses: Use, what: &'static str) -> NotFollowed {
-    NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses }
+    NotFollowed { dialect: Dialect::Openplc4, what, evidence: "STruC++ 0.6.1, run", uses, is_told: false }
 }
 
 const fn of_processor(dialect: Dialect) -> NotFollowed {
@@ -195,13 +238,14 @@ const fn of_processor(dialect: Dialect) -> NotFollowed {
         what: "the processor decides: x86 ends the program, ARM of 64 bits gives 0 and continues; here it is a fault",
         evidence: "C, 6.5.5: undefined; Arm, \"SDIV\", \"UDIV\": 0",
         uses: Use::Part(Part::DivisionByZero),
+        is_told: false,
     }
 }
 
 const CODESYS_DATES: &str = "CODESYS help, \"DATE\"; Beckhoff Information System, \"Date and time data types\"";
 
 const fn not_followed(dialect: Dialect, ty: Elementary, what: &'static str, evidence: &'static str) -> NotFollowed {
-    NotFollowed { dialect, what, evidence, uses: Use::Type(ty) }
+    NotFollowed { dialect, what, evidence, uses: Use::Type(ty), is_told: false }
 }
 
 /// An edge of a function, of which this is what every program does, and what vendors say of it.

@@ -1,9 +1,10 @@
 //! The rules of each system, with the page or program that shows them.
 
 use super::choice::{
-    ArrayValues, ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, IntegerText, LimitCrossed,
-    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, RealAndBits, RealOfText, RealToInteger,
-    RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit, ToBool,
+    ByZero, CaseSelector, DateAsNumber, DefaultString, Functions, Halves, InitialValues, IntegerText, LimitCrossed,
+    Literals, LongTime, LoopLimit, MixedNumbers, ModuloOfReals, NarrowIntegers, ProgramOrder, RealAndBits, RealOfText,
+    RealToInteger, RotatedConstant, SecondBool, ShrOfSigned, SqrtOfNegative, TextPositions, TimeAsNumber, TimeUnit,
+    ToBool,
 };
 use super::followed::{Followed, Rules};
 
@@ -35,7 +36,8 @@ pub(super) const IEC: Rules = Rules {
     loop_limit: follows(LoopLimit::Once, "IEC 61131-3, 7.3.3.4.2: the body changes none of them"),
     time_unit: follows(TimeUnit::Nanoseconds, "IEC 61131-3, 6.3.3.2: left to the implementer"),
     long_time: follows(LongTime::Signed, "IEC 61131-3, table 10: 64 bits of nanoseconds"),
-    array_values: follows(ArrayValues::Everywhere, "IEC 61131-3, 6.5.1.3"),
+    initial_values: follows(InitialValues::Everywhere, "IEC 61131-3, 6.5.1.3"),
+    program_order: follows(ProgramOrder::ByPriority, "IEC 61131-3, 6.8.2"),
 };
 
 /// The choice of another dialect, where no page of the vendor says anything.
@@ -71,7 +73,8 @@ pub(super) const CSCAPE: Rules = Rules {
     loop_limit: undocumented(IEC.loop_limit),
     time_unit: undocumented(IEC.time_unit),
     long_time: undocumented(IEC.long_time),
-    array_values: undocumented(IEC.array_values),
+    initial_values: undocumented(IEC.initial_values),
+    program_order: undocumented(IEC.program_order),
 };
 
 pub(super) const CODESYS: Rules = Rules {
@@ -116,6 +119,7 @@ pub(super) const OPENPLC: Rules = Rules {
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),
     text_positions: follows(TextPositions::OfLibrary, MATIEC),
+    program_order: follows(ProgramOrder::OfText, MATIEC),
     literals: follows(Literals::OfC, MATIEC),
     second_bool: follows(SecondBool::IfItDecides, MATIEC),
     case_selector: follows(CaseSelector::Cut, MATIEC),
@@ -150,9 +154,9 @@ pub(super) const OPENPLC4: Rules = Rules {
         TextPositions::OfLibrary,
         "STruC++ 0.6.1, run: REPLACE('abcdef', 'XY', -1, 3) is 'abXYbcdef'",
     ),
-    array_values: follows(
-        ArrayValues::InBlocks,
-        "STruC++ 0.6.1, run: `a : ARRAY[0..1] OF INT := [5, 6]` of a PROGRAM is 0, 0",
+    initial_values: follows(
+        InitialValues::OfStrucpp,
+        "STruC++ 0.6.1, run: `a : ARRAY[0..1] OF INT := [5, 6]` of a PROGRAM is 0, 0, `n : INT := 2 * 3` is 0",
     ),
     literals: follows(Literals::OfC, "STruC++ 0.6.1, run: `REAL#0.1 - 0.30000001` is -0.200000003"),
     second_bool: follows(SecondBool::Always, "STruC++ 0.6.1: C++'s `&` and `|`"),
