@@ -109,6 +109,8 @@ impl<'s> Declarations<'s> {
         let scope = &builder.scope;
         let owner = owner_of(pou, decl);
         let reported = self.log.diagnostics.len();
+        let is_given = pou.kind == PouKind::Program && block.kind == VarKind::Input;
+        let within = if is_given { Within::Input } else { Within::of(pou) };
         let resolved = match open_bounds(pou, block, decl) {
             Some((bounds, element)) => {
                 self.check_no_initial(decl);
@@ -117,7 +119,7 @@ impl<'s> Declarations<'s> {
             None => match self.abstract_in_out(builder.slot, block, decl) {
                 Some(ty) => Some(Resolved::plain(ty)),
                 None if pou.kind.is_block() && self.is_bit(&decl.ty) => self.initial_bit(decl, scope),
-                None => self.declared_type(decl, scope, owner, Within::of(pou)),
+                None => self.declared_type(decl, scope, owner, within),
             },
         };
         if !self.log.has_errors_since(reported) {

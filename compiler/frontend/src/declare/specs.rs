@@ -77,6 +77,8 @@ pub(super) enum Within {
     Structure,
     /// A PROGRAM, or global variables.
     Program,
+    /// The inputs of a PROGRAM, which the world outside gives.
+    Input,
 }
 
 impl Within {
@@ -177,6 +179,13 @@ impl<'s> Declarations<'s> {
     ) -> Option<Resolved> {
         let mut resolved = self.resolve_type_named(&decl.ty, scope, name, None)?;
         self.check_construction(decl, resolved.ty);
+        let starts_by_itself = decl.initial.is_none() && within != Within::Input;
+        if starts_by_itself
+            && let (Type::Subrange(..), Some((least, greatest))) = (resolved.ty, self.program.range(resolved.ty))
+            && !(least..=greatest).contains(&0)
+        {
+            self.note_part(Part::SubrangeStart, decl.span);
+        }
         if let Some(initial) = &decl.initial {
             // A refused value has been reported; the type is known anyway.
             let is_flat = self.has_flat_rows(&decl.ty, initial);
@@ -195,7 +204,9 @@ impl<'s> Declarations<'s> {
         let is_left_out = match within {
             Within::Pou => false,
             Within::Structure => matches!(ty, Type::Array(_)),
-            Within::Program => matches!(ty, Type::Array(_)) || is_computed && matches!(ty, Type::Elementary(_)),
+            Within::Program | Within::Input => {
+                matches!(ty, Type::Array(_)) || is_computed && matches!(ty, Type::Elementary(_))
+            }
         };
         let is_left_out =
             is_left_out && self.dialect(initial.span).rules().initial_values.choice == InitialValues::OfStrucpp;
@@ -524,9 +535,6 @@ impl<'s> Declarations<'s> {
             return None;
         }
         let ty = Type::Subrange(made_of, self.intern_bounds(bounds));
-        if !(bounds.0..=bounds.1).contains(&0) {
-            self.note_part(Part::SubrangeStart, low.span);
-        }
         let initial = self.least(ty);
         Some(Resolved { ty, initial })
     }
