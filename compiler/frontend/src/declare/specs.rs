@@ -134,6 +134,11 @@ impl<'s> Declarations<'s> {
             }
             resolved.initial = self.initial(initial, &resolved, &scope)?;
         }
+        if let (Type::Enum(_), Const::Scalar(first)) = (resolved.ty, &resolved.initial)
+            && first.as_integer() != Some(0)
+        {
+            self.note_part(Part::EnumStart, decl.name.span);
+        }
         Some(resolved)
     }
 
@@ -141,18 +146,6 @@ impl<'s> Declarations<'s> {
     fn note_type(&mut self, decl: &ast::TypeDecl<'s>, ty: Type) {
         let is_named = matches!(decl.ty.kind, TypeKind::Named(_));
         match ty {
-            Type::Enum(id) => {
-                let first = self
-                    .program
-                    .enumeration(id)
-                    .values
-                    .first()
-                    .and_then(|it| it.value.as_integer())
-                    .unwrap_or_default();
-                if decl.initial.is_some() || first != 0 {
-                    self.note_part(Part::EnumStart, decl.name.span);
-                }
-            }
             Type::Subrange(..) => self.note_part(Part::NamedNumber, decl.name.span),
             Type::Elementary(it) if is_named && (it.is_integer() || it.is_bits() && it != Elementary::Bool) => {
                 self.note_part(Part::NamedNumber, decl.name.span);
