@@ -99,7 +99,10 @@ impl Folder {
     pub fn written(self, name: &str, text: &str) -> String {
         let path = self.path().join(name);
         std::fs::create_dir_all(path.parent().expect("it is in a folder")).expect("a folder");
-        std::fs::write(&path, text).expect("a file");
+        // Tests run at once: one must not read what another is writing.
+        let aside = self.path().join(format!("{:?}", std::thread::current().id()));
+        std::fs::write(&aside, text).expect("a file");
+        std::fs::rename(&aside, &path).expect("a file");
         path.display().to_string()
     }
 

@@ -5,6 +5,7 @@ use crate::{Folder, has};
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicU16, Ordering};
 
 /// What it reads is copied to what it writes; `lost` is what it reads where nobody answers.
 const REMOTE: &str = "PROGRAM Main
@@ -37,8 +38,15 @@ for line in sys.stdin:
     print(*(int(it) for it in slave.getValues(functions[table], int(number), 2)), flush=True)
 "#;
 
+/// A port where nobody listens. It lies below those that the system gives to connections (from 32768), of which one could take
+/// it before the server does.
 fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+    static NEXT: AtomicU16 = AtomicU16::new(0);
+    let first = 10_000 + u16::try_from(std::process::id() % 20_000).unwrap();
+    (0..1000)
+        .map(|_| first + NEXT.fetch_add(1, Ordering::Relaxed))
+        .find(|it| TcpListener::bind(("127.0.0.1", *it)).is_ok())
+        .expect("a free port")
 }
 
 /// A server of pymodbus.
