@@ -66,10 +66,24 @@ pub enum Part {
     EvaluationOrder,
     /// A VAR_IN_OUT of a FUNCTION_BLOCK that is given what is global, or what another is given. No program notes it.
     InOutCopied,
+    /// A VAR_IN_OUT or VAR_OUTPUT of a FUNCTION or METHOD that is given what is global, or what another is given. No program notes it.
+    InOutOfFunctionCopied,
+    /// An input of an instance that another argument of its call reads.
+    InputReadInCall,
+    /// The target of an output that the call, or a target before it, changes.
+    TargetChanged,
+    /// A METHOD whose named arguments are not those that it declares first, in their order.
+    NamedOrder,
+    /// A FUNCTION_BLOCK with a VAR_IN_OUT whose call gives arguments by position.
+    PositionsOfBlock,
+    /// A PROGRAM without a TASK, where another has one.
+    NoTask,
+    /// A comparison of two texts that are literals.
+    ComparedLiterals,
 }
 
 impl Part {
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 29] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -92,6 +106,13 @@ impl Part {
         Self::FunctionDefault,
         Self::EvaluationOrder,
         Self::InOutCopied,
+        Self::InOutOfFunctionCopied,
+        Self::InputReadInCall,
+        Self::TargetChanged,
+        Self::NamedOrder,
+        Self::PositionsOfBlock,
+        Self::NoTask,
+        Self::ComparedLiterals,
     ];
 
     /// In words, for tables and messages.
@@ -119,6 +140,13 @@ impl Part {
             Self::FunctionDefault => "an initial value of an input of a FUNCTION",
             Self::EvaluationOrder => "an operand that another operand changes",
             Self::InOutCopied => "a VAR_IN_OUT for what is global or given twice",
+            Self::InOutOfFunctionCopied => "a VAR_IN_OUT of a FUNCTION for what is global or given twice",
+            Self::InputReadInCall => "an input that another argument of its call reads",
+            Self::TargetChanged => "the target of an output that its call changes",
+            Self::NamedOrder => "named arguments of a METHOD in another order than it declares them",
+            Self::PositionsOfBlock => "a call of a FUNCTION_BLOCK with a VAR_IN_OUT by position",
+            Self::NoTask => "a PROGRAM without a TASK, where another has one",
+            Self::ComparedLiterals => "a comparison of two texts that are literals",
         }
     }
 }

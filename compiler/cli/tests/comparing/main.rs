@@ -7,6 +7,8 @@ mod advice;
 mod advised;
 mod beyond;
 mod blamed;
+mod calls;
+mod charts;
 mod claims;
 mod idle;
 mod open;

@@ -75,6 +75,7 @@ pub(crate) fn declare<'s>(
         declarations.pous.push(PouSlot { run: Some(*instance), ..PouSlot::open(pou) });
     }
     declarations.note_starts();
+    declarations.note_tasks(files);
     declarations.check_columns();
     declarations.note_results(bodies);
     declarations.note_kept_in_outs(bodies);

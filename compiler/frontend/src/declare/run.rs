@@ -35,7 +35,7 @@ pub(crate) struct Run<'s> {
 
 type Listed<'a, 's> = (&'a ast::Resource<'s>, &'a ast::ProgramInstance<'s>);
 
-fn configurations<'a, 's>(files: &'a [ast::File<'s>]) -> impl Iterator<Item = &'a ast::Configuration<'s>> {
+pub(super) fn configurations<'a, 's>(files: &'a [ast::File<'s>]) -> impl Iterator<Item = &'a ast::Configuration<'s>> {
     files.iter().flat_map(|it| &it.items).filter_map(|it| match it {
         ast::Item::Configuration(it) => Some(it),
         ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Test(_) => None,

@@ -1,5 +1,6 @@
 //! Type specifications to types.
 
+use super::run::configurations;
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
 use crate::dialect::rules::InitialValues;
@@ -154,6 +155,16 @@ impl<'s> Declarations<'s> {
                 self.note_part(Part::NamedText, decl.name.span);
             }
             _ => {}
+        }
+    }
+
+    /// Notes a PROGRAM without a TASK beside one that has one.
+    pub(super) fn note_tasks(&mut self, files: &[ast::File<'s>]) {
+        for resource in configurations(files).flat_map(|it| &it.resources) {
+            let without = resource.programs.iter().find(|it| it.task.is_none());
+            if let Some(run) = without.filter(|_| resource.programs.iter().any(|it| it.task.is_some())) {
+                self.note_part(Part::NoTask, run.name.span);
+            }
         }
     }
 

@@ -485,8 +485,8 @@ impl<'s> Checker<'_, 's> {
             let location = self.at(parts.parts[at].span);
             draft.push(Statement::assign(place.clone(), Expr::load(place, location), location));
         }
-        let Parts { written, .. } = &mut parts;
-        self.settle(written, &draft);
+        self.note_order(&parts, &draft);
+        self.settle(&mut parts.written, &draft);
         let statements = self.until_outputs(&parts, call, span, Copies::Made)?;
         for statement in statements {
             self.count_values_of(&statement);

@@ -315,6 +315,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
+        self.note_positions(&parameters, arguments, span);
         if self.decl.dialect(span).wants_all_positions() {
             let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], slot);
             self.require_all(owner, &parameters, &given, arguments, is_optional, span)?;

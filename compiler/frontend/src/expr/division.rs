@@ -22,16 +22,9 @@ impl Checker<'_, '_> {
                 let op = if op == Op::Div { Op::DivOrZero } else { Op::ModOrZero };
                 self.apply(op, ty, vec![a, b], ty, span)
             }
-            ByZero::Reported if is_integer && self.context == Context::Body && (zero || b.as_const().is_none()) => {
-                self.warn_of_zero(zero, "each division is a minor fault, and its result is the dividend", span);
-                self.dividend_or_quotient(op, ty, (a, b), zero, span)
-            }
             ByZero::Reported if self.context == Context::Body && (zero || b.as_const().is_none()) => {
-                self.warn_of_zero(
-                    zero,
-                    "each division is a minor fault, and its result is infinite or not a number",
-                    span,
-                );
+                let result = if is_integer { "the dividend" } else { "infinite or not a number" };
+                self.warn_of_zero(zero, &format!("each division is a minor fault, and its result is {result}"), span);
                 self.reported_quotient(op, ty, (a, b), zero, span)
             }
             ByZero::Faults | ByZero::GivesZero | ByZero::Reported => self.apply(op, ty, vec![a, b], ty, span),
@@ -48,8 +41,9 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// In Logix a divisor of 0 gives the dividend, and is reported (1756-RM003N, pp. 277 and 281).
-    fn dividend_or_quotient(
+    /// A division that is reported where its divisor is 0. The result of integers is then the dividend (Logix,
+    /// 1756-RM003N, pp. 277 and 281), that of reals is infinite or not a number.
+    fn reported_quotient(
         &mut self,
         op: Op,
         ty: Type,
@@ -63,47 +57,25 @@ impl Checker<'_, '_> {
                 self.save(name, side);
             }
         }
+        let is_integer = ty.elementary().is_some_and(Elementary::is_integer);
         let report = self.minor_fault(span)?;
         if is_zero {
             self.block.push(report);
-            return Some(a);
+            return if is_integer { Some(a) } else { self.apply(op, ty, vec![a, b], ty, span) };
+        }
+        let zero = Expr::new(ty, staunch_ir::ExprKind::Const(self.decl.program.repr(ty)?.zero()), at);
+        let condition = self.apply(Op::Eq, ty, vec![b.clone(), zero], Type::BOOL, span)?;
+        let then = vec![report];
+        if !is_integer {
+            self.push(StatementKind::If { condition, then, otherwise: Vec::new() }, span);
+            return self.apply(op, ty, vec![a, b], ty, span);
         }
         let result = self.temporary("quotient", ty);
         self.assign(result.clone(), a.clone(), span);
-        let zero = Expr::new(ty, staunch_ir::ExprKind::Const(self.decl.program.repr(ty)?.zero()), at);
-        let condition = self.apply(Op::Eq, ty, vec![b.clone(), zero], Type::BOOL, span)?;
         let quotient = self.apply(op, ty, vec![a, b], ty, span)?;
         let otherwise = vec![Statement::assign(result.clone(), quotient, at)];
-        self.push(StatementKind::If { condition, then: vec![report], otherwise }, span);
+        self.push(StatementKind::If { condition, then, otherwise }, span);
         Some(Expr::load(result, at))
-    }
-
-    /// The quotient of reals, of which one by 0 is reported, too.
-    fn reported_quotient(
-        &mut self,
-        op: Op,
-        ty: Type,
-        (mut a, mut b): (Expr, Expr),
-        is_zero: bool,
-        span: Span,
-    ) -> Option<Expr> {
-        let report = self.minor_fault(span)?;
-        if is_zero {
-            if a.as_const().is_none() {
-                self.save("dividend", &mut a);
-            }
-            self.block.push(report);
-            return self.apply(op, ty, vec![a, b], ty, span);
-        }
-        for (name, side) in [("dividend", &mut a), ("divisor", &mut b)] {
-            if side.as_const().is_none() {
-                self.save(name, side);
-            }
-        }
-        let zero = Expr::new(ty, staunch_ir::ExprKind::Const(self.decl.program.repr(ty)?.zero()), self.at(span));
-        let condition = self.apply(Op::Eq, ty, vec![b.clone(), zero], Type::BOOL, span)?;
-        self.push(StatementKind::If { condition, then: vec![report], otherwise: Vec::new() }, span);
-        self.apply(op, ty, vec![a, b], ty, span)
     }
 
     /// The statement that notes a minor fault at this place.

@@ -122,6 +122,9 @@ impl<'s> Checker<'_, 's> {
         let parameters: Vec<_> = formals.iter().map(parameter).collect();
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
         let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], called.slot);
+        if self.decl.pous[called.slot].ast.kind == ast::PouKind::Method {
+            self.note_named_order(&parameters, arguments);
+        }
         let enough = self.require_all(owner, &parameters, &given, arguments, is_optional, called.span).is_some();
         Some((given, enough))
     }

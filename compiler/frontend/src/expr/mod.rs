@@ -13,6 +13,7 @@ mod block_copy;
 mod bound;
 mod byte_order;
 mod call;
+mod call_order;
 pub(crate) mod call_tracking;
 mod called_twice;
 mod callee;

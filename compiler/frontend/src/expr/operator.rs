@@ -9,7 +9,7 @@ use crate::types::coercion::{Join, as_number, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::BinaryOp;
 use staunch_ir::narrow::is_narrow;
-use staunch_ir::{Block, Conversion, Elementary, Expr, ExprKind, Op, Statement, StatementKind, Type, Value};
+use staunch_ir::{Block, Conversion, Elementary, Expr, ExprKind, Op, Part, Statement, StatementKind, Type, Use, Value};
 use staunch_runtime::Class;
 
 const REAL: Type = Type::Elementary(Elementary::Real);
@@ -55,6 +55,9 @@ impl<'s> Checker<'_, 's> {
             && let ast::ExprKind::Name(_) = left.kind
         {
             a = self.operand(left, Some(Type::Enum(y)))?;
+        }
+        if compares(op) && [left, right].iter().all(|it| is_text(it)) {
+            self.note_use(Use::Part(Part::ComparedLiterals), op_span);
         }
         let sides = Sides { a, b, left: left.span, right: right.span, op, op_span, span, hint };
         self.combine(sides)
@@ -696,6 +699,12 @@ fn immediate(value: i128, ty: Elementary) -> Option<i128> {
 fn mixed_signs(a: Elementary, b: Elementary, mixes: bool) -> Option<Elementary> {
     let (a, b) = (as_number(a), as_number(b));
     (mixes && a.is_integer() && b.is_integer()).then_some(Elementary::Lint)
+}
+
+/// A literal of a text.
+fn is_text(expr: &ast::Expr<'_>) -> bool {
+    let ast::ExprKind::Literal(literal) = &expr.bare().kind else { return false };
+    matches!(literal.value, ast::LiteralValue::String(_))
 }
 
 pub(crate) fn compares(op: BinaryOp) -> bool {

@@ -267,7 +267,7 @@ impl Checker<'_, '_> {
         }
     }
 
-    fn held_changes(&self, effects: &[Statement], held: &Held) -> bool {
+    pub(crate) fn held_changes(&self, effects: &[Statement], held: &Held) -> bool {
         match held {
             Held::Value(value) => self.changes(effects, value),
             Held::Place(place) => {

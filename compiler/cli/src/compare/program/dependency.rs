@@ -26,10 +26,12 @@ enum Node {
     Referenced,
 }
 
+type Edges = HashMap<Node, HashSet<Node>>;
+
 /// What each decides directly.
 #[derive(Debug, Default)]
 pub struct Dependencies {
-    decides: HashMap<Node, HashSet<Node>>,
+    decides: Edges,
 }
 
 impl Dependencies {
@@ -80,12 +82,7 @@ impl Dependencies {
             }
             Node::Whole(_) | Node::Part(_) | Node::Run(_) | Node::Result(_) | Node::Referenced => false,
         };
-        let mut open = vec![Node::Whole(start), Node::Part(start)];
-        let mut seen: HashSet<Node> = open.iter().copied().collect();
-        while let Some(node) = open.pop() {
-            let next = self.decides.get(&node).into_iter().flatten();
-            open.extend(next.filter(|it| !is_other(it) && seen.insert(**it)));
-        }
+        let seen = reached(&self.decides, vec![Node::Whole(start), Node::Part(start)], |it| !is_other(it));
         let fields = seen.into_iter().filter_map(|it| match it {
             Node::Whole(Name::Field(owner, field)) => Some((owner, field)),
             Node::Whole(_) | Node::Part(_) | Node::Run(_) | Node::Result(_) | Node::Referenced => None,
@@ -95,17 +92,12 @@ impl Dependencies {
 
     /// The fields that may decide the value of one of these, themselves among them.
     pub fn deciding(&self, of: &[Declared]) -> HashSet<Declared> {
-        let mut decided_by: HashMap<Node, Vec<Node>> = HashMap::new();
+        let mut decided_by = Edges::default();
         for (from, all) in &self.decides {
-            all.iter().for_each(|to| decided_by.entry(*to).or_default().push(*from));
+            all.iter().for_each(|to| _ = decided_by.entry(*to).or_default().insert(*from));
         }
         let names = of.iter().map(|it| Name::Field(it.0, it.1));
-        let mut open: Vec<Node> = names.flat_map(|it| [Node::Whole(it), Node::Part(it)]).collect();
-        let mut seen: HashSet<Node> = open.iter().copied().collect();
-        while let Some(node) = open.pop() {
-            let next = decided_by.get(&node).into_iter().flatten();
-            open.extend(next.filter(|it| seen.insert(**it)));
-        }
+        let seen = reached(&decided_by, names.flat_map(|it| [Node::Whole(it), Node::Part(it)]).collect(), |_| true);
         let fields = seen.into_iter().filter_map(|it| match it {
             Node::Whole(Name::Field(owner, field)) | Node::Part(Name::Field(owner, field)) => Some((owner, field)),
             Node::Whole(_) | Node::Part(_) | Node::Run(_) | Node::Result(_) | Node::Referenced => None,
@@ -129,6 +121,16 @@ impl Dependencies {
             _ => {}
         }
     }
+}
+
+/// The nodes that edges lead to from these, themselves among them, through those that `may` be entered.
+fn reached(edges: &Edges, mut open: Vec<Node>, may: impl Fn(&Node) -> bool) -> HashSet<Node> {
+    let mut seen: HashSet<Node> = open.iter().copied().collect();
+    while let Some(node) = open.pop() {
+        let next = edges.get(&node).into_iter().flatten();
+        open.extend(next.filter(|it| may(it) && seen.insert(**it)));
+    }
+    seen
 }
 
 struct Walk<'p, 'f> {

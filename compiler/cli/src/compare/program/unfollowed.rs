@@ -26,7 +26,7 @@ pub fn find(program: &Program, dialect: Dialect, cycle: Time, starts: &HashMap<N
         let is_moving = row.uses == Use::Part(Part::MovingPreset);
         let moving = || is_moving.then(|| moving_preset::line(program, starts)).flatten();
         let of_timers = || timer(program, row.uses).filter(|_| cycle % MILLISECOND != 0);
-        let copied = || (row.uses == Use::Part(Part::InOutCopied)).then(|| copied_in_out(program)).flatten();
+        let copied = || copied_in_out(program, row.uses);
         let line = used(program, row.uses).or_else(of_timers).or_else(moving).or_else(copied)?;
         if harmless.has(row.uses) {
             return None;
@@ -106,12 +106,20 @@ fn first_field(place: &Place) -> Option<FieldId> {
     }
 }
 
-/// The first call of a FUNCTION_BLOCK that gives a VAR_IN_OUT what is global, or what it gives another.
-fn copied_in_out(program: &Program) -> Option<u32> {
+/// The first call of a FUNCTION_BLOCK, or of a FUNCTION or METHOD, that gives a VAR_IN_OUT what is global, or what it gives another.
+fn copied_in_out(program: &Program, wanted: Use) -> Option<u32> {
+    let of_block = match wanted {
+        Use::Part(Part::InOutCopied) => true,
+        Use::Part(Part::InOutOfFunctionCopied) => false,
+        _ => return None,
+    };
     let mut found: Option<u32> = None;
     for routine in &program.routines {
         visit::statements(&routine.body, &mut |statement| {
-            let StatementKind::Call { instance: Some(_), arguments, .. } = &statement.kind else { return };
+            let StatementKind::Call { instance, arguments, .. } = &statement.kind else { return };
+            if instance.is_some() != of_block {
+                return;
+            }
             let given = arguments.iter().filter_map(|it| match it {
                 Argument::Reference(place) => Some((place.root, first_field(place))),
                 Argument::Value(_) => None,

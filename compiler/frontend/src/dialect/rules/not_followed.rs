@@ -188,6 +188,18 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     .told(),
     of_strucpp(Use::Part(Part::InOutCopied), COPIED),
     of_matiec(Use::Part(Part::InOutCopied), COPIED),
+    of_matiec(Use::Part(Part::InOutOfFunctionCopied), COPIED),
+    of_matiec(Use::Part(Part::InputReadInCall), ONE_BY_ONE),
+    of_strucpp(Use::Part(Part::InputReadInCall), ONE_BY_ONE),
+    of_strucpp(
+        Use::Part(Part::TargetChanged),
+        "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`",
+    )
+    .told(),
+    of_strucpp(Use::Part(Part::NamedOrder), "the names are passed over: the first argument goes to the first input").told(),
+    of_strucpp(Use::Part(Part::PositionsOfBlock), "only inputs are counted, so that arguments go to others").told(),
+    of_strucpp(Use::Part(Part::NoTask), "it runs in the first TASK").told(),
+    of_strucpp(Use::Part(Part::ComparedLiterals), "C++ compares addresses, and the linker decides").told(),
     not_followed(
         Dialect::Logix,
         Elementary::Dt,
@@ -210,6 +222,8 @@ const OVERFLOWN_CPP: &str = "C++ leaves it undefined, and the compiler and the p
 
 const COPIED: &str =
     "it is copied in before the call and back after it, each by itself: what the body writes to one shows in no other";
+
+const ONE_BY_ONE: &str = "inputs are assigned one by one: in `x(a := 5, b := x.a)`, `b` is 5";
 
 const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
 

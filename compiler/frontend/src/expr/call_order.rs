@@ -1,0 +1,107 @@
+//! What a program makes of the order in which a call is done, as far as a compiler does it in another one.
+
+use super::argument::{Parts, Role};
+use super::binding::Parameter;
+use super::checker::Checker;
+use super::order::Held;
+use crate::dialect::rules::is_followed;
+use crate::types::signature::pin_place;
+use crate::{Span, ast};
+use ast::ArgumentKind;
+use staunch_ir::{Expr, Location, Part, Place, Section, Statement, Type, Use};
+
+impl<'s> Checker<'_, 's> {
+    /// An input that another argument reads, and a target that is another one after the call. `call` is its statements.
+    pub(crate) fn note_order(&mut self, parts: &Parts, call: &[Statement]) {
+        let dialect = parts.parts.last().map(|it| self.decl.dialect(it.span));
+        if dialect.is_none_or(|it| is_followed(it, Part::InputReadInCall)) {
+            return;
+        }
+        let Some(instance) = parts.parts.first().filter(|it| matches!(it.role, Role::Instance)).and(parts.instance())
+        else {
+            return self.note_target_passed(parts);
+        };
+        let stored: Vec<_> = parts.parts.iter().map(|it| input_of(instance, &it.role)).collect();
+        for (at, (part, written)) in parts.parts.iter().zip(&parts.written).enumerate() {
+            let found = match part.role {
+                Role::Stored(..) | Role::Passed(_) => {
+                    let others = stored.iter().enumerate().filter(|it| it.0 != at).filter_map(|it| it.1.clone());
+                    let stores: Vec<_> = others.map(|it| stored_as_it_is(&it)).collect();
+                    self.held_changes(&stores, &written.held).then_some(Part::InputReadInCall)
+                }
+                Role::Target(..) | Role::Count(..) => {
+                    self.held_changes(&call[..written.last], &written.held).then_some(Part::TargetChanged)
+                }
+                Role::Instance | Role::Copied(..) => None,
+            };
+            if let Some(found) = found {
+                self.note_use(Use::Part(found), part.span);
+            }
+        }
+    }
+
+    /// A variable that a FUNCTION is given for an output and for a VAR_IN_OUT.
+    fn note_target_passed(&mut self, parts: &Parts) {
+        let places = |is: fn(&Role) -> bool| {
+            let all = parts.parts.iter().zip(&parts.written).filter(move |it| is(&it.0.role));
+            all.filter_map(|(part, written)| Some((written.place()?, part.span)))
+        };
+        let passed = places(|it| matches!(it, Role::Passed(_) | Role::Copied(..)));
+        let passed: Vec<_> = passed.map(|it| Held::Value(loaded(it.0))).collect();
+        let is_passed = |target: &Place| {
+            let stored = [stored_as_it_is(target)];
+            passed.iter().any(|it| self.held_changes(&stored, it))
+        };
+        let found = places(|it| matches!(it, Role::Target(..))).find(|it| is_passed(it.0));
+        if let Some((_, span)) = found {
+            self.note_use(Use::Part(Part::InOutOfFunctionCopied), span);
+        }
+    }
+
+    /// Named arguments of a METHOD that do not come as it declares them.
+    pub(crate) fn note_named_order(&mut self, parameters: &[Parameter<'_>], arguments: &[ast::Argument<'s>]) {
+        let is_other = |(argument, parameter): (&ast::Argument<'s>, Option<&Parameter<'_>>)| match &argument.kind {
+            ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. } => {
+                parameter.is_none_or(|it| !it.name.eq_ignore_ascii_case(name.text))
+            }
+            ArgumentKind::Positional(_) => false,
+        };
+        let declared = parameters.iter().map(Some).chain(std::iter::repeat(None));
+        if let Some((first, _)) = arguments.iter().zip(declared).find(|it| is_other(*it)) {
+            self.note_use(Use::Part(Part::NamedOrder), first.span);
+        }
+    }
+
+    /// Arguments by position for a block that has a VAR_IN_OUT.
+    pub(crate) fn note_positions(
+        &mut self,
+        parameters: &[Parameter<'_>],
+        arguments: &[ast::Argument<'s>],
+        callee: Span,
+    ) {
+        let is_positional = |it: &ast::Argument<'s>| matches!(it.kind, ArgumentKind::Positional(_));
+        if parameters.iter().any(|it| it.section == Section::InOut) && arguments.iter().any(is_positional) {
+            self.note_use(Use::Part(Part::PositionsOfBlock), callee);
+        }
+    }
+}
+
+fn loaded(place: &Place) -> Expr {
+    Expr::load(place.clone(), Location::default())
+}
+
+fn stored_as_it_is(place: &Place) -> Statement {
+    Statement::assign(place.clone(), loaded(place), Location::default())
+}
+
+/// The input that a part of a call is stored in.
+fn input_of(instance: &Place, role: &Role) -> Option<Place> {
+    match (role, instance.ty) {
+        (Role::Stored(field, ty), _) => Some(instance.clone().field(*field, *ty)),
+        (Role::Passed(number), Type::Block(block)) => {
+            let name = block.info().inputs().nth(*number)?.name;
+            Some(pin_place(instance.clone(), block, name))
+        }
+        _ => None,
+    }
+}
