@@ -53,6 +53,7 @@ pub struct Build {
     openplc4_cd_rises: Option<bool>,
     s7_ld_edge: Option<bool>,
     f_trig_before_2024_12: Option<bool>,
+    codesys_lreal_literals: Option<bool>,
     implicit_narrowing: Option<bool>,
     levels: Vec<(Level, String)>,
 }
@@ -120,6 +121,13 @@ impl Build {
     #[must_use]
     pub fn f_trig_before_2024_12(mut self, is_old: bool) -> Self {
         self.f_trig_before_2024_12 = Some(is_old);
+        self
+    }
+
+    /// CODESYS: a number with a fraction is an LREAL also beside a REAL, as `codesys-real-literals = "lreal"` says.
+    #[must_use]
+    pub fn codesys_lreal_literals(mut self, are_lreal: bool) -> Self {
+        self.codesys_lreal_literals = Some(are_lreal);
         self
     }
 
@@ -254,6 +262,7 @@ impl Build {
             openplc4_cd_rises: self.openplc4_cd_rises.unwrap_or(project.openplc4_cd_rises),
             s7_ld_edge: self.s7_ld_edge.unwrap_or(project.s7_ld_edge),
             f_trig_before_2024_12: self.f_trig_before_2024_12.unwrap_or(project.f_trig_before_2024_12),
+            codesys_lreal_literals: self.codesys_lreal_literals.unwrap_or(project.codesys_lreal_literals),
             implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
             ..Default::default()
         };

@@ -28,6 +28,8 @@ pub struct Project {
     /// `s7-ld = "edge"`.
     pub s7_ld_edge: bool,
     pub f_trig_before_2024_12: bool,
+    /// `codesys-real-literals = "lreal"`.
+    pub codesys_lreal_literals: bool,
     pub implicit_narrowing: bool,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
@@ -155,7 +157,7 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 21] = [
+const SETTINGS: [&str; 22] = [
     "dialect",
     "files",
     "libraries",
@@ -168,6 +170,7 @@ const SETTINGS: [&str; 21] = [
     "openplc4-cd-edge",
     "s7-ld",
     "openplc-f-trig",
+    "codesys-real-literals",
     "implicit-narrowing",
     "warn",
     "deny",
@@ -194,6 +197,9 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "s7-ld" => project.s7_ld_edge = choice(key, value, &["level", "edge"])? == "edge",
         "openplc-f-trig" => {
             project.f_trig_before_2024_12 = choice(key, value, &["now", "before-2024-12"])? == "before-2024-12";
+        }
+        "codesys-real-literals" => {
+            project.codesys_lreal_literals = choice(key, value, &["place", "lreal"])? == "lreal";
         }
         "implicit-narrowing" => project.implicit_narrowing = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,

@@ -238,9 +238,9 @@ impl Session {
         Ok(options(&self.common, &self.project)?.dialect)
     }
 
-    /// Whether an option is on, by the project file.
-    pub fn is_on(&self, option: staunch_runtime::BlockOption) -> Result<bool, String> {
-        Ok(options(&self.common, &self.project)?.is_on(option))
+    /// How the project file answers a question that a vendor leaves open.
+    pub fn answer(&self, question: staunch_frontend::Question) -> Result<bool, String> {
+        Ok(options(&self.common, &self.project)?.answer(question))
     }
 
     /// What a text of the other system's is rejected for: without what a move excuses.
@@ -450,6 +450,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         openplc4_cd_rises: project.openplc4_cd_rises,
         s7_ld_edge: project.s7_ld_edge,
         f_trig_before_2024_12: project.f_trig_before_2024_12,
+        codesys_lreal_literals: project.codesys_lreal_literals,
         implicit_narrowing: project.implicit_narrowing,
         moved_from: None,
         tests: false,

@@ -39,7 +39,7 @@ pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severi
 pub use dialect::{Dialect, rules};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
-pub use options::{OPEN_OPTIONS, OpenOption, Options};
+pub use options::{OPEN_OPTIONS, OpenOption, Options, Question};
 pub use parse::{parse, parse_file};
 pub use prelude::{Declares, UNITS as LIBRARY, Unit as LibraryUnit};
 pub use source::{Source, Sources, Span};

@@ -1,7 +1,7 @@
 //! How a program is read.
 
 use crate::dialect::Dialect;
-use staunch_ir::BlockId;
+use staunch_ir::{BlockId, Part, Use, Uses};
 use staunch_runtime::{BLOCKS, BlockOption};
 
 /// How to read the sources.
@@ -17,6 +17,8 @@ pub struct Options {
     pub s7_ld_edge: bool,
     /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
     pub f_trig_before_2024_12: bool,
+    /// In `codesys`, a number with a fraction and without a type is an LREAL also beside a REAL.
+    pub codesys_lreal_literals: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
     pub implicit_narrowing: bool,
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
@@ -42,9 +44,21 @@ impl Options {
         }
     }
 
-    /// The same with an option set.
+    /// How an open question is answered.
+    pub fn answer(&self, question: Question) -> bool {
+        match question {
+            Question::Block(option) => self.is_on(option),
+            Question::RealLiterals => self.codesys_lreal_literals,
+        }
+    }
+
+    /// The same with a question answered.
     #[must_use]
-    pub fn with(self, option: BlockOption, is_on: bool) -> Self {
+    pub fn with(self, question: Question, is_on: bool) -> Self {
+        let option = match question {
+            Question::Block(option) => option,
+            Question::RealLiterals => return Self { codesys_lreal_literals: is_on, ..self },
+        };
         match option {
             BlockOption::CtuStopAtPv => Self { ctu_stop_at_pv: is_on, ..self },
             BlockOption::CdRises => Self { openplc4_cd_rises: is_on, ..self },
@@ -54,10 +68,19 @@ impl Options {
     }
 }
 
-/// What a vendor's documents leave open about its blocks, so that a program that uses one of them may do either.
+/// What a vendor's documents leave open.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Question {
+    /// About a block.
+    Block(BlockOption),
+    /// CODESYS: the type of a number with a fraction beside a REAL.
+    RealLiterals,
+}
+
+/// An open question as a setting: a program to which it matters may do either.
 #[derive(Debug)]
 pub struct OpenOption {
-    pub option: BlockOption,
+    pub asks: Question,
     /// In `staunch.toml`.
     pub name: &'static str,
     /// What is left open, and by whom, as a sentence.
@@ -69,41 +92,47 @@ pub struct OpenOption {
 /// All of them, one row each.
 pub const OPEN_OPTIONS: &[OpenOption] = &[
     OpenOption {
-        option: BlockOption::CtuStopAtPv,
+        asks: Question::Block(BlockOption::CtuStopAtPv),
         name: "ctu-stop-at-pv",
         question: "The documents of CODESYS and TwinCAT disagree on whether CTU and LCTU stop at PV.",
         settings: ["false", "true"],
     },
     OpenOption {
-        option: BlockOption::CdRises,
+        asks: Question::Block(BlockOption::CdRises),
         name: "openplc4-cd-edge",
         question: "OpenPLC Editor counts CD on its falling edge through 4.2.11; a later version may count the rising edge.",
         settings: ["falling", "rising"],
     },
     OpenOption {
-        option: BlockOption::LdEdge,
+        asks: Question::Block(BlockOption::LdEdge),
         name: "s7-ld",
         question: "Siemens' pages of CTD and CTUD say that PV is loaded while LD is 1, and that it is loaded when LD changes to 1.",
         settings: ["level", "edge"],
     },
     OpenOption {
-        option: BlockOption::FTrigBefore202412,
+        asks: Question::Block(BlockOption::FTrigBefore202412),
         name: "openplc-f-trig",
         question: "Before December 2024, F_TRIG of OpenPLC sees an edge in a first call with CLK FALSE.",
         settings: ["now", "before-2024-12"],
     },
+    OpenOption {
+        asks: Question::RealLiterals,
+        name: "codesys-real-literals",
+        question: "CODESYS and Beckhoff say on one page that a number with a fraction is always an LREAL, on another that it has the type that its \
+                   place asks for.",
+        settings: ["place", "lreal"],
+    },
 ];
 
 impl OpenOption {
-    /// Whether the option decides what a block does: by its name, or because it stands for that block.
-    pub fn decides(&self, block: BlockId) -> bool {
-        let info = block.info();
-        let replaces = |of: &str| of == info.name;
-        let is_row = |it: &&staunch_runtime::BlockInfo| {
-            let row = it.facts.option.filter(|it| it.option == self.option);
-            it.family == info.family && row.is_some_and(|row| replaces(row.of) || it.name == info.name)
-        };
-        BLOCKS.iter().any(|it| is_row(&it))
+    /// Whether a program of a dialect does otherwise by the answer: it has such a block, or such a number.
+    pub fn matters(&self, dialect: Dialect, blocks: impl IntoIterator<Item = BlockId>, uses: &Uses) -> bool {
+        match self.asks {
+            Question::Block(option) => blocks.into_iter().any(|it| decides(option, it)),
+            Question::RealLiterals => {
+                dialect == Dialect::Codesys && uses.first(Use::Part(Part::FractionBesideReal)).is_some()
+            }
+        }
     }
 
     /// As a line of `staunch.toml`.
@@ -114,4 +143,14 @@ impl OpenOption {
             _ => format!("{} = \"{setting}\"", self.name),
         }
     }
+}
+
+/// Whether an option decides what a block does: by its name, or because it stands for that block.
+fn decides(option: BlockOption, block: BlockId) -> bool {
+    let info = block.info();
+    let is_row = |it: &&staunch_runtime::BlockInfo| {
+        let row = it.facts.option.filter(|it| it.option == option);
+        it.family == info.family && row.is_some_and(|row| row.of == info.name || it.name == info.name)
+    };
+    BLOCKS.iter().any(|it| is_row(&it))
 }

@@ -1,7 +1,7 @@
-//! What the vendors' documents leave open about the blocks of a program: each answer is a program of its own, and no
+//! What the vendors' documents leave open about what a program uses: each answer is a program of its own, and no
 //! verdict rests on one of them alone.
 
-use super::pair::Pair;
+use super::pair::{Pair, Side};
 use crate::session::Session;
 use staunch_build::Project;
 use staunch_frontend::{OPEN_OPTIONS, OpenOption, Options, Sources};
@@ -19,9 +19,12 @@ pub struct Variant {
 impl Variant {
     /// As the project has it.
     pub fn own(session: &Session, pair: &Pair) -> Result<Self, String> {
-        let blocks = || pair.sides.iter().flat_map(|it| &it.scalars.blocks);
-        let used = OPEN_OPTIONS.iter().enumerate().filter(|(_, row)| blocks().any(|it| row.decides(it.block)));
-        let settings = used.take(MAX_OPTIONS).map(|(at, row)| Ok((at, session.is_on(row.option)?)));
+        let matters = |row: &OpenOption| {
+            let blocks = |it: &Side| it.scalars.blocks.iter().map(|it| it.block).collect::<Vec<_>>();
+            pair.sides.iter().any(|it| row.matters(it.dialect, blocks(it), &it.program.uses))
+        };
+        let used = OPEN_OPTIONS.iter().enumerate().filter(|(_, row)| matters(row));
+        let settings = used.take(MAX_OPTIONS).map(|(at, row)| Ok((at, session.answer(row.asks)?)));
         Ok(Self { settings: settings.collect::<Result<_, String>>()? })
     }
 
@@ -42,7 +45,7 @@ impl Variant {
         asked: Option<&str>,
     ) -> Result<Option<[Program; 2]>, String> {
         let set = |options: Options| {
-            self.settings.iter().fold(options, |options, (at, is_on)| options.with(OPEN_OPTIONS[*at].option, *is_on))
+            self.settings.iter().fold(options, |options, (at, is_on)| options.with(OPEN_OPTIONS[*at].asks, *is_on))
         };
         let ours = from.with_options(&from.sources, None, set)?;
         let theirs = from.with_options(to.0, Some(to.1), set)?;

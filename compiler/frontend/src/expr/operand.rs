@@ -186,7 +186,7 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0202, span, format!("this number is too large for {}", ty.name()));
             return None;
         }
-        if ty == Elementary::Real && self.decl.dialect(span).rules().has_literals_of_c() {
+        if ty == Elementary::Real && self.literals_are_doubles(span) {
             let double = number.value(Elementary::Lreal.repr())?;
             return Some(staunch_runtime::ops::convert_value(double, ty.repr()));
         }

@@ -159,7 +159,9 @@ impl<'s> Checker<'_, 's> {
         };
         let rules = dialect.rules();
         let is_one_type = rules.keeps_one_type() && is_kept(&sides);
+        let is_double = own == Elementary::Real && [&sides.a, &sides.b].into_iter().any(is_double);
         let ty = match rules.promotes_integers() && !is_one_type {
+            _ if is_double && self.literals_are_doubles(sides.span) => Elementary::Lreal,
             true => promoted(&sides, own, dialect),
             false => own,
         };
@@ -617,9 +619,6 @@ fn promoted(sides: &Sides, own: Elementary, dialect: Dialect) -> Elementary {
         || as_c && is_junction(sides.op);
     // A promoted value may be negative: it is compared with a UDINT by what it is. C and Logix make a UDINT of it.
     let compared = compares(sides.op) && as_number(own) == Elementary::Udint && !as_c && !ranks;
-    if as_c && own == Elementary::Real && [&sides.a, &sides.b].into_iter().any(is_double) {
-        return Elementary::Lreal;
-    }
     if as_c && (calculates || compares(sides.op)) && own.is_integer() && [&sides.a, &sides.b].into_iter().any(is_long) {
         return join(own, Elementary::Lint).unwrap_or(own);
     }

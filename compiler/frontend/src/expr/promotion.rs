@@ -3,12 +3,20 @@
 
 use super::checker::Checker;
 use crate::Span;
+use crate::dialect::Dialect;
 use staunch_ir::narrow::is_narrow;
 use staunch_ir::{Conversion, Elementary, Expr, Type};
 
 impl Checker<'_, '_> {
     pub(crate) fn promotes(&self, ty: Elementary, span: Span) -> bool {
         is_narrow(ty) && self.decl.dialect(span).rules().promotes_integers()
+    }
+
+    /// Whether a number with a fraction and without a type has the precision of an LREAL.
+    pub(crate) fn literals_are_doubles(&self, span: Span) -> bool {
+        let dialect = self.decl.dialect(span);
+        let is_chosen = dialect == Dialect::Codesys && self.decl.log.options.codesys_lreal_literals;
+        is_chosen || dialect.rules().has_literals_of_c()
     }
 
     /// Whether functions, too, compute values of this type at DINT.

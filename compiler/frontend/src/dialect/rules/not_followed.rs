@@ -330,9 +330,10 @@ pub const EDGES: &[Edge] = &[
     edge(
         Dialect::Codesys,
         "a number with a fraction in an operation with a REAL",
-        "a REAL",
+        "a REAL, or an LREAL with `codesys-real-literals = \"lreal\"`",
         "CODESYS help and Beckhoff, \"Typed Literals\": always LREAL, so that `r = 0.1` is FALSE; SA0024: typed by its use",
-        &[Use::Part(Part::FractionBesideReal)],
+        // Both are tried.
+        &[],
     ),
     edge(
         Dialect::Logix,
