@@ -2,17 +2,18 @@
 #include "scale.h"
 #include <stdio.h>
 
-_Alignas(STAUNCH_STATE_ALIGN) static uint8_t state[STAUNCH_STATE_SIZE];
+static struct staunch_state state;
 
 int main(void) {
-    staunch_init(state);
+    uint8_t *bytes = (uint8_t *)&state;
+    staunch_init(bytes);
     for (int scan = 0; scan < 3; scan++) {
         staunch_context cx = {scan * 10000000LL, scan == 0, STAUNCH_TURNS, 10000000LL};
-        uint64_t code = staunch_scan(state, &cx, STAUNCH_SCALE);
+        uint64_t code = staunch_scan(bytes, &cx, STAUNCH_SCALE);
         if (code != 0) {
             return (int)(code & 0xff);
         }
-        printf("%.1f kg%s\n", STAUNCH_SCALE_WEIGHT(state), STAUNCH_SCALE_FAULT(state) ? ", no answer" : "");
+        printf("%.1f kg%s\n", state.Scale.weight, state.Scale.fault ? ", no answer" : "");
     }
     return 0;
 }

@@ -185,9 +185,20 @@ pub struct Build {
     /// With `--emit rust`: make the variables readable by name at run time, with a table and a function
     #[arg(long)]
     pub names: bool,
+    /// With `--emit obj`, `lib` or `header`: what symbols, macros and structures begin with, instead of `staunch`, so that several
+    /// programs can be linked together
+    #[arg(long, value_name = "NAME")]
+    pub prefix: Option<String>,
     /// The PROGRAM to run, if the sources have several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
+}
+
+impl Build {
+    /// What the entry points' symbols begin with.
+    pub fn prefix(&self) -> &str {
+        self.prefix.as_deref().unwrap_or(crate::header::PREFIX)
+    }
 }
 
 #[derive(Clone, Debug, Args)]

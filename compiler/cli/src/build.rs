@@ -17,6 +17,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     if args.opt.is_some() && !matches!(args.emit, Emit::Obj | Emit::Lib | Emit::Exe) {
         return Err("`--opt` is for compiled code: `--emit obj`, `lib` or `exe`".to_owned());
     }
+    check_prefix(args)?;
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let target = args.target.as_deref().map(full_name);
     let target = target.as_deref();
@@ -34,7 +35,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
             output::write(&out, text.as_bytes())?;
         }
         Emit::Header => {
-            let text = header::header(&runnable(session, args)?, &out, &session.first);
+            let text = header::header(&runnable(session, args)?, args.prefix(), &out, &session.first);
             output::write(&out, text.as_bytes())?;
         }
         Emit::Systemd => {
@@ -77,7 +78,7 @@ fn hold(session: &Session, program: &Program, args: &Build, target: Option<&str>
 fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
     let opt = args.opt.unwrap_or_default();
     match args.backend {
-        BuildBackend::Native => native(program, args.emit, target, opt, out),
+        BuildBackend::Native => native(program, args, target, opt, out),
         BuildBackend::Rust if !program.externals().is_empty() => Err(
             "`{external}` POUs are implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
              and implement them in C"
@@ -87,11 +88,30 @@ fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) ->
     }
 }
 
-fn native(program: &Program, emit: Emit, target: Option<&str>, opt: Opt, out: &Path) -> Result<(), String> {
+/// Two programs that are linked together need symbols of their own.
+fn check_prefix(args: &Build) -> Result<(), String> {
+    let Some(prefix) = &args.prefix else { return Ok(()) };
+    if !header::is_prefix(prefix) {
+        return Err(format!(
+            "`--prefix {prefix}`: a symbol of C begins with a letter, and has letters, digits and `_`"
+        ));
+    }
+    match (args.emit, args.backend) {
+        (Emit::Obj | Emit::Lib, BuildBackend::Native) | (Emit::Header, _) => Ok(()),
+        (Emit::Obj | Emit::Lib, BuildBackend::Rust) => {
+            Err("`--prefix` is for `--backend native`; of emitted Rust, each program is a module of its own".to_owned())
+        }
+        (Emit::Rust | Emit::Exe | Emit::Map | Emit::Systemd, _) => {
+            Err("`--prefix` is for what is linked with others: `--emit obj`, `lib` or `header`".to_owned())
+        }
+    }
+}
+
+fn native(program: &Program, args: &Build, target: Option<&str>, opt: Opt, out: &Path) -> Result<(), String> {
     let machine = target::of(target, opt)?;
-    let object = staunch_native::object(program, &machine).map_err(|it| it.to_string())?;
-    match emit {
-        Emit::Lib => link::static_library(&object, target, out),
+    let object = staunch_native::object_named(program, &machine, args.prefix()).map_err(|it| it.to_string())?;
+    match args.emit {
+        Emit::Lib => link::static_library(&object, args.prefix(), target, out),
         Emit::Exe => link::executable(&object, target, out),
         Emit::Obj | Emit::Rust | Emit::Header | Emit::Map | Emit::Systemd => output::write(out, &object),
     }

@@ -29,13 +29,15 @@ pub fn executable(object: &[u8], target: Option<&str>, out: &Path) -> Result<(),
     output::executable(out, &read(&made)?)
 }
 
-/// What a program's object defines for others.
-const ENTRY_POINTS: [&str; 4] = ["staunch_init", "staunch_scan", "staunch_map", "staunch_map_len"];
+/// What a program's object defines for others, after its prefix.
+const ENTRY_POINTS: [&str; 4] = ["init", "scan", "map", "map_len"];
 
 /// Packs a program's object and the runtime into a static library, without a `main`.
-pub fn static_library(object: &[u8], target: Option<&str>, out: &Path) -> Result<(), String> {
+pub fn static_library(object: &[u8], prefix: &str, target: Option<&str>, out: &Path) -> Result<(), String> {
     let runtime = runtime_library(target, Library::Runtime)?;
-    let packed = archive::with_object(&runtime, "program.o", object, &ENTRY_POINTS);
+    let entry_points = ENTRY_POINTS.map(|it| format!("{prefix}_{it}"));
+    let entry_points = entry_points.each_ref().map(String::as_str);
+    let packed = archive::with_object(&runtime, "program.o", object, &entry_points);
     output::write(out, &packed.ok_or("rustc made a library that is not in GNU's form")?)
 }
 

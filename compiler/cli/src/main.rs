@@ -35,7 +35,6 @@ mod manual;
 mod new;
 
 mod output;
-mod prototype;
 mod scratch;
 mod systemd;
 

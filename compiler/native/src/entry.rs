@@ -20,7 +20,7 @@ pub(crate) struct EntryPoints {
 }
 
 pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace) -> Result<EntryPoints, Error> {
-    let init = define(module, workspace, "staunch_init", of_init, init)?;
+    let init = define(module, workspace, "init", of_init, init)?;
     let scan = match module.scan() {
         Some(of_a_routine) => of_a_routine,
         None => define(module, workspace, SCAN, of_scan, scan)?,
@@ -37,7 +37,8 @@ fn define(
 ) -> Result<FuncId, Error> {
     let mut signature = module.output.make_signature();
     of(&mut signature);
-    let id = module.output.declare_function(name, Linkage::Export, &signature)?;
+    let symbol = module.symbol(name);
+    let id = module.output.declare_function(&symbol, Linkage::Export, &signature)?;
     let context = &mut workspace.context;
     context.func.signature = signature;
     context.func.name = UserFuncName::user(0, id.as_u32());
@@ -49,7 +50,7 @@ fn define(
     emit(module, &mut builder, &values);
     builder.seal_all_blocks();
     builder.finalize(module.output.target_config());
-    module.define_entry(context, id, name)?;
+    module.define_entry(context, id, &symbol)?;
     Ok(id)
 }
 
@@ -120,10 +121,10 @@ fn immediate(size: usize) -> i64 {
 }
 
 /// `staunch_map`, the map's text, and `staunch_map_len`, its length.
-pub(crate) fn map(module: &mut dyn Module, text: &str) -> Result<(), Error> {
+pub(crate) fn map(module: &mut dyn Module, prefix: &str, text: &str) -> Result<(), Error> {
     let length = u64::try_from(text.len()).expect("a usize fits a u64").to_le_bytes();
-    for (name, bytes) in [("staunch_map", text.as_bytes()), ("staunch_map_len", length.as_slice())] {
-        let id = module.declare_data(name, Linkage::Export, false, false)?;
+    for (name, bytes) in [("map", text.as_bytes()), ("map_len", length.as_slice())] {
+        let id = module.declare_data(&format!("{prefix}_{name}"), Linkage::Export, false, false)?;
         define_data(module, id, bytes.to_vec())?;
     }
     Ok(())

@@ -72,6 +72,6 @@ pub use jit::{Init, Jit, Scan};
 pub use listing::{clif, frames, measures};
 pub use longest::{Longest, Unknown};
 pub use measure::{Callee, Measure, Measures};
-pub use object::object;
+pub use object::{object, object_named};
 pub use outside::stack_outside;
 pub use target::{Aim, Target};

@@ -41,6 +41,8 @@ fn types_of_objects(words: &[u32]) -> HashSet<(u32, u32)> {
 
 pub(crate) struct ModuleEmitter<'p> {
     pub(crate) program: &'p Program,
+    /// What the symbols of the entry points begin with.
+    pub(crate) prefix: &'p str,
     pub(crate) layout: Layout,
     effects: Vec<Effects>,
     /// The body of the PROGRAM that runs alone: its function is `staunch_scan`.
@@ -84,6 +86,7 @@ impl<'p> ModuleEmitter<'p> {
     ) -> Self {
         Self {
             program,
+            prefix: signature::PREFIX,
             aim: Aim::of(output.isa()),
             layout: Layout::new(program),
             handles_faults: program.handles_faults(),
@@ -110,7 +113,7 @@ impl<'p> ModuleEmitter<'p> {
             let id = RoutineId::next(at);
             let signature = self.signature(id);
             let (name, linkage) = match self.is_scanned(id) {
-                true => (signature::SCAN.to_owned(), Linkage::Export),
+                true => (self.symbol(signature::SCAN), Linkage::Export),
                 false => (symbol(id, routine), Linkage::Local),
             };
             let function = self.output.declare_function(&name, linkage, &signature)?;
@@ -127,6 +130,11 @@ impl<'p> ModuleEmitter<'p> {
         }
         signature::of_routine(self.program, self.program.routine(id), self.effects(id), &mut signature);
         signature
+    }
+
+    /// An entry point's name for linkers.
+    pub(crate) fn symbol(&self, name: &str) -> String {
+        format!("{}_{name}", self.prefix)
     }
 
     /// Whether a routine's function is `staunch_scan`.

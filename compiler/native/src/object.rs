@@ -1,6 +1,7 @@
 //! Object files, for a linker to join with the runtime and a host.
 
 use crate::program::{self, Also};
+use crate::signature::PREFIX;
 use crate::{Error, Target, entry};
 use cranelift_module::default_libcall_names;
 use cranelift_object::object::SectionKind;
@@ -16,9 +17,17 @@ use staunch_ir::symbols::map_text;
 /// # Errors
 /// If a function is too large for the code generator.
 pub fn object(program: &Program, target: &Target) -> Result<Vec<u8>, Error> {
+    object_named(program, target, PREFIX)
+}
+
+/// The same, with symbols that begin with `prefix` instead of `staunch`, so that several programs can be linked together.
+///
+/// # Errors
+/// If a function is too large for the code generator.
+pub fn object_named(program: &Program, target: &Target, prefix: &str) -> Result<Vec<u8>, Error> {
     let mut module = module(target)?;
-    program::emit(program, &mut module, Also::Nothing)?;
-    entry::map(&mut module, &map_text(program, &Layout::new(program)))?;
+    program::emit_named(program, &mut module, Also::Nothing, prefix)?;
+    entry::map(&mut module, prefix, &map_text(program, &Layout::new(program)))?;
     let mut product = module.finish();
     if target.is_elf() {
         // Without this section a linker takes the stack to be executable.

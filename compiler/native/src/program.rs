@@ -3,6 +3,7 @@
 use crate::entry::EntryPoints;
 use crate::measure::Measures;
 use crate::module::{ModuleEmitter, Workspace};
+use crate::signature::PREFIX;
 use crate::target::Aim;
 use crate::{Error, entry, function, inline_block, inline_op, scan};
 use cranelift_frontend::FunctionBuilderContext;
@@ -46,6 +47,16 @@ pub(crate) enum Also {
 
 /// Puts a whole program into `output`.
 pub(crate) fn emit(program: &Program, output: &mut dyn Module, also: Also) -> Result<Emitted, Error> {
+    emit_named(program, output, also, PREFIX)
+}
+
+/// The same, with entry points whose symbols begin otherwise.
+pub(crate) fn emit_named(
+    program: &Program,
+    output: &mut dyn Module,
+    also: Also,
+    prefix: &str,
+) -> Result<Emitted, Error> {
     let aim = Aim::of(output.isa());
     let is_of_x86 = matches!(output.isa().triple().architecture, Architecture::X86_64);
     let rules = match aim {
@@ -59,6 +70,7 @@ pub(crate) fn emit(program: &Program, output: &mut dyn Module, also: Also) -> Re
     let effects = effects(program, rules);
     let scanned = scan::scanned(program, &effects);
     let mut module = ModuleEmitter::new(program, effects, scanned, output);
+    module.prefix = prefix;
     module.listing = (also == Also::Listing).then(String::new);
     module.counts = also == Also::Counts && is_of_x86;
     module.declare()?;

@@ -12,8 +12,10 @@ use target_lexicon::{Architecture, Triple};
 
 /// All targets are 64-bit.
 pub(crate) const POINTER: Clif = types::I64;
-/// The symbol of the scan.
-pub(crate) const SCAN: &str = "staunch_scan";
+/// What entry points' symbols begin with, where nothing else is asked for.
+pub(crate) const PREFIX: &str = "staunch";
+/// The symbol of the scan, after the prefix.
+pub(crate) const SCAN: &str = "scan";
 /// A fault's code.
 pub(crate) const CODE: Clif = types::I64;
 

@@ -9,6 +9,7 @@ mod cache;
 mod check;
 mod coverage;
 mod external;
+mod header;
 #[cfg(unix)]
 mod io;
 mod lists;

@@ -1,0 +1,144 @@
+//! Names in C.
+
+use super::PREFIX;
+use std::collections::HashSet;
+
+/// Words that cannot be names in C or C++, or that compilers define, but can be names in Structured Text.
+const WORDS: &[&str] = &[
+    "alignas",
+    "asm",
+    "auto",
+    "bool",
+    "break",
+    "catch",
+    "char",
+    "class",
+    "concept",
+    "const",
+    "constexpr",
+    "decltype",
+    "default",
+    "delete",
+    "double",
+    "enum",
+    "explicit",
+    "export",
+    "extern",
+    "float",
+    "friend",
+    "goto",
+    "inline",
+    "int",
+    "linux",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "noexcept",
+    "nullptr",
+    "offsetof",
+    "operator",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "requires",
+    "restrict",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "struct",
+    "switch",
+    "template",
+    "this",
+    "throw",
+    "try",
+    "typedef",
+    "typeid",
+    "typename",
+    "typeof",
+    "union",
+    "unix",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "wchar_t",
+];
+
+/// Macros that every header has, without the prefix.
+const OWN: [&str; 8] = ["STATE_SIZE", "STATE_ALIGN", "SHARED", "ASSERT", "ALIGNED", "TURNS", "TASKS", "LOCATED"];
+
+/// The names of one header.
+pub struct Names {
+    prefix: String,
+    /// Macros and constants without their prefix, each defined once.
+    taken: HashSet<String>,
+}
+
+impl Names {
+    pub fn new(prefix: &str, guard: &str) -> Self {
+        let own = OWN.into_iter().chain(["RETAINED"]).chain(guard.strip_prefix("STAUNCH_"));
+        Self { prefix: prefix.to_owned(), taken: own.map(str::to_owned).collect() }
+    }
+
+    /// Nothing of the program's gets these names.
+    pub fn take(&mut self, names: Vec<String>) {
+        self.taken.extend(names);
+    }
+
+    /// What is linked: `staunch_init`.
+    pub fn symbol(&self, name: &str) -> String {
+        format!("{}_{name}", self.prefix)
+    }
+
+    /// A structure of the program's: with the prefix, if it is not the usual one.
+    pub fn tag(&self, name: &str) -> String {
+        if self.prefix == PREFIX { plain(name) } else { format!("{}_{}", self.prefix, plain(name)) }
+    }
+
+    /// A macro that every header has.
+    pub fn own(&self, name: &str) -> String {
+        format!("{}_{name}", upper(&[&self.prefix]))
+    }
+
+    /// A macro for a name of the program's: `STAUNCH_MAIN_X`, or `STAUNCH_MAIN_X_2` and so on where that is taken.
+    pub fn claim(&mut self, parts: &[&str]) -> String {
+        let wanted = upper(parts);
+        let mut name = wanted.clone();
+        let mut number = 2;
+        while !self.taken.insert(name.clone()) {
+            name = format!("{wanted}_{number}");
+            number += 1;
+        }
+        self.own(&name)
+    }
+}
+
+/// Whether symbols may begin so in C.
+pub fn is_prefix(text: &str) -> bool {
+    let starts = text.starts_with(|it: char| it.is_ascii_alphabetic());
+    starts && text.chars().all(|it| it.is_ascii_alphanumeric() || it == '_')
+}
+
+/// A name in letters of C.
+pub fn plain(name: &str) -> String {
+    name.chars().map(|it| if it.is_ascii_alphanumeric() { it } else { '_' }).collect()
+}
+
+/// The name of a variable.
+pub fn variable(name: &str) -> String {
+    let mut name = plain(name);
+    let is_reserved =
+        name.strip_prefix('_').is_some_and(|it| it.starts_with(|it: char| it == '_' || it.is_ascii_uppercase()));
+    if is_reserved || WORDS.contains(&name.as_str()) {
+        name.push('_');
+    }
+    name
+}
+
+pub fn upper(parts: &[&str]) -> String {
+    plain(&parts.join("_")).to_ascii_uppercase()
+}
