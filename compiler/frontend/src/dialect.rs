@@ -236,6 +236,11 @@ impl Dialect {
         matches!(self, Self::Logix)
     }
 
+    /// Numbers, bit strings and BOOLs become one another where they are stored or passed, as in C++.
+    pub const fn converts_as_cpp(self) -> bool {
+        matches!(self, Self::Openplc4)
+    }
+
     /// `p[i]` follows a POINTER TO.
     pub const fn indexes_pointers(self) -> bool {
         matches!(self, Self::Codesys)

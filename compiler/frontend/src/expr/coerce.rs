@@ -44,6 +44,9 @@ impl<'s> Checker<'_, 's> {
                 let value = self.coerce(operand, Type::Elementary(made_of), span)?;
                 self.in_range(value, made_of, id, span)
             }
+            (Operand::Promoted(expr, from), Type::Elementary(into)) if self.becomes_as_cpp(from, into, span) => {
+                self.as_cpp(expr, into, span)
+            }
             (Operand::Promoted(expr, from), Type::Elementary(into)) => {
                 self.may_become(from, into, span).then(|| stored(expr, into))
             }
@@ -136,6 +139,9 @@ impl<'s> Checker<'_, 's> {
             (Type::Reference(_), Type::Elementary(into)) => self.address_as(expr, into, span),
             (Type::Elementary(Elementary::Ultime), Type::Elementary(Elementary::Ltime)) => {
                 self.signed_duration(expr, span)
+            }
+            (Type::Elementary(from), Type::Elementary(into)) if self.becomes_as_cpp(from, into, span) => {
+                self.as_cpp(expr, into, span)
             }
             (Type::Elementary(from), Type::Elementary(into)) => {
                 self.may_become(from, into, span).then(|| self.number_as(expr, into, span))?
@@ -308,17 +314,24 @@ impl<'s> Checker<'_, 's> {
         sign_only
     }
 
-    fn report_cut(&mut self, from: Elementary, to: Elementary, span: Span) {
+    pub(super) fn report_cut(&mut self, from: Elementary, to: Elementary, span: Span) {
         let message = format!("{} becomes {}: high bits are cut", from.name(), to.name());
         self.report_implicit(Code::W0513, message, from, to, span);
     }
 
-    fn report_sign(&mut self, from: Elementary, to: Elementary, span: Span) {
+    pub(super) fn report_sign(&mut self, from: Elementary, to: Elementary, span: Span) {
         let message = format!("{} becomes {}: the sign may change", from.name(), to.name());
         self.report_implicit(Code::W0506, message, from, to, span);
     }
 
-    fn report_implicit(&mut self, code: Code, message: String, from: Elementary, to: Elementary, span: Span) {
+    pub(super) fn report_implicit(
+        &mut self,
+        code: Code,
+        message: String,
+        from: Elementary,
+        to: Elementary,
+        span: Span,
+    ) {
         self.report(Diagnostic::new(code, span, message).label("implicit conversion").help(format!(
             "convert it explicitly: `{}_TO_{}(…)`",
             from.name(),
@@ -343,7 +356,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// CODESYS makes a real of any integer, and a REAL of an LREAL, with a warning where that has more digits (C0197).
-    fn loses_precision(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+    pub(super) fn loses_precision(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
         let from = as_number(from);
         let lost = match from {
             Elementary::Lreal => "about 7 of 15 digits are kept",

@@ -382,7 +382,7 @@ impl<'s> Checker<'_, 's> {
 }
 
 /// By which conversion x86-64 cuts a real to a type.
-fn truncated_by(to: Elementary) -> Op {
+pub(super) fn truncated_by(to: Elementary) -> Op {
     match (to.repr().size(), to.repr().is_unsigned()) {
         (8, true) => Op::TruncUlint,
         (8, false) | (4, true) => Op::TruncLint,

@@ -2,10 +2,12 @@
 //! otherwise with what is a plain `bool`, `int` or `char *`.
 
 use super::checker::Checker;
-use crate::Span;
+use super::conversion::truncated_by;
 use crate::ast::{self, ArgumentKind, BinaryOp, ExprKind, LiteralValue, UnaryOp};
 use crate::dialect::rules::Functions;
-use staunch_ir::{Conversion, Expr, Type};
+use crate::types::coercion::widens;
+use crate::{Code, Diagnostic, Span};
+use staunch_ir::{Conversion, Elementary, Expr, Type};
 
 /// What a BOOL is in C++.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -28,6 +30,42 @@ impl<'s> Checker<'_, 's> {
         let is_plain =
             value.ty == Type::BOOL && self.has_functions_of_strucpp(written.span) && held(written) != Held::Class;
         if is_plain { self.convert(Conversion::Value, Type::LINT, value) } else { value }
+    }
+
+    /// Whether a value is stored as one of another type, by C++'s conversion. Where it may be another value then, a lint says so.
+    pub(super) fn becomes_as_cpp(&mut self, from: Elementary, to: Elementary, span: Span) -> bool {
+        let is_number = |it: Elementary| it.is_real() || it.is_integer() || it.is_bits();
+        if !self.decl.dialect(span).converts_as_cpp() || !is_number(from) || !is_number(to) || widens(from, to) {
+            return false;
+        }
+        let name = format!("{} becomes {}", from.name(), to.name());
+        match (from.repr().range(), to.repr().range()) {
+            _ if to == Elementary::Bool => {
+                self.report_implicit(Code::W0513, format!("{name}: TRUE where it is not 0"), from, to, span);
+            }
+            (None, Some(_)) => self.report(
+                Diagnostic::new(Code::W0511, span, format!("{name}: its fraction is cut"))
+                    .label("implicit conversion")
+                    .help(format!("write `TRUNC(…)`, or round it with `{}_TO_{}(…)`", from.name(), to.name())),
+            ),
+            (_, None) => _ = self.loses_precision(from, to, span),
+            (Some(own), Some(into)) if own.0 >= into.0 && own.1 <= into.1 => {}
+            (Some(_), Some(_)) if from.repr().size() > to.repr().size() => self.report_cut(from, to, span),
+            (Some(_), Some(_)) => self.report_sign(from, to, span),
+        }
+        true
+    }
+
+    /// A number as C++ stores it: a real is cut, and beyond the type x86-64 decides.
+    pub(super) fn as_cpp(&mut self, value: Expr, to: Elementary, span: Span) -> Option<Expr> {
+        let target = Type::Elementary(to);
+        self.note_conversion(value.ty, target, span);
+        let is_cut = value.ty.elementary().is_some_and(Elementary::is_real) && !to.is_real() && to != Elementary::Bool;
+        let value = match is_cut {
+            true => self.apply(truncated_by(to), value.ty, vec![value], Type::LINT, span)?,
+            false => value,
+        };
+        Some(self.convert(Conversion::Value, target, value))
     }
 
     /// Whether it is a pointer to characters, which as a BOOL is TRUE: a text that is written.
