@@ -64,9 +64,11 @@ pub enum Part {
     FunctionDefault,
     /// An operand that another operand changes.
     EvaluationOrder,
-    /// A VAR_IN_OUT of a FUNCTION_BLOCK that is given what is global, or what another is given. No program notes it.
+    /// A VAR_IN_OUT of a FUNCTION_BLOCK that is given what is global, or what another is given. Programs note only that an output
+    /// is.
     InOutCopied,
-    /// A VAR_IN_OUT or VAR_OUTPUT of a FUNCTION or METHOD that is given what is global, or what another is given. No program notes it.
+    /// A VAR_IN_OUT or VAR_OUTPUT of a FUNCTION or METHOD that is given what is global, or what another is given. Programs
+    /// note only that an output is.
     InOutOfFunctionCopied,
     /// An input of an instance that another argument of its call reads.
     InputReadInCall,

@@ -480,7 +480,11 @@ impl Runner<'_> {
             crate::error::tell(format_args!("note: no scan is between --from and --to"));
         }
         let written = self.show(subject);
-        let written = self.needed(written).map(drop);
+        let written = self.needed(written).map(|it| {
+            if it.is_none() && self.out.trace.as_ref().is_some_and(Trace::is_picture) {
+                self.out.lost += self.out.rows;
+            }
+        });
         if let (Some(path), lost @ 1..) = (&self.options.trace, self.out.lost) {
             let plural = if lost == 1 { "" } else { "s" };
             crate::error::tell(format_args!("warning: {}: {lost} row{plural} could not be written", path.display()));

@@ -99,6 +99,8 @@ pub(crate) fn is_picture(path: &Path) -> bool {
 pub(crate) struct Trace {
     path: PathBuf,
     sink: Box<dyn Sink>,
+    /// A picture: nothing of it is written before the last row.
+    is_picture: bool,
     /// A file that is there as a whole at the end.
     replacement: Option<Replacement>,
 }
@@ -116,7 +118,13 @@ impl Trace {
             Form::Page => Ok(Box::new(page::Page::new(out, subject)) as Box<dyn Sink>),
             Form::Diagram => Ok(Box::new(diagram::Diagram::new(out, subject)) as Box<dyn Sink>),
         };
-        Ok(Self { path: path.to_owned(), sink: sink.map_err(file)?, replacement })
+        let is_picture = matches!(form, Form::Page | Form::Diagram);
+        Ok(Self { path: path.to_owned(), sink: sink.map_err(file)?, is_picture, replacement })
+    }
+
+    /// Whether all rows are lost where it cannot be finished.
+    pub fn is_picture(&self) -> bool {
+        self.is_picture
     }
 
     pub fn row(&mut self, subject: &Subject<'_>, row: Row<'_>) -> Result<(), Error> {

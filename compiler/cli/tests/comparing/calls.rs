@@ -61,6 +61,7 @@ fn what_a_call_is_on_openplc_is_not_equal() {
         ("position", "openplc4", "i := n; y(1, i); q := i;", "only inputs are counted"),
         ("literals", "openplc4", "IF 'ab' < 'abc' THEN q := n; END_IF;", "C++ compares addresses"),
         ("twice", "openplc", "i := n; q := Both(i, i);", "it is copied in before the call"),
+        ("of_block", "openplc4", "i := n; y(a := 1, v := i, o => i); q := i;", "it is copied in before the call"),
         ("output", "openplc", "i := n; j := n; q := Both(i, j, o => i);", "it is copied in before the call"),
     ];
     for (name, to, body, why) in asked {

@@ -75,9 +75,12 @@ fn a_run_in_real_time_goes_on_without_a_trace() {
     let folder = Folder::with("lost", &[("main.st", COUNTER)]);
     folder.staunch("build main.st -o plant").out(0);
     let run = "--realtime --scans 3 --cycle 1ms --vars full --trace";
-    for trace in ["/dev/full", "missing/t.csv", "pipe"] {
-        if trace == "pipe" {
-            assert!(Command::new("mkfifo").arg(folder.0.join("pipe")).status().unwrap().success());
+    for trace in ["/dev/full", "missing/t.csv", "pipe", "full.svg", "full.html"] {
+        match trace {
+            "pipe" => assert!(Command::new("mkfifo").arg(folder.0.join("pipe")).status().unwrap().success()),
+            // All of a picture is written at the end.
+            "full.svg" | "full.html" => std::os::unix::fs::symlink("/dev/full", folder.0.join(trace)).unwrap(),
+            _ => {}
         }
         let executable = Command::new(folder.0.join("plant"))
             .args(format!("{run} {trace}").split(' '))

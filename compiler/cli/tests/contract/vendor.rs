@@ -318,3 +318,17 @@ fn a_library_is_called_as_the_project_refers_to_it() {
     folder.write("staunch.toml", "libraries = [\"Plant_Core\"]");
     folder.staunch("check Line.plcproj").err(0);
 }
+
+/// A file that holds nothing but VAR_GLOBAL is a list by its name, also where the start of a variable needs code.
+#[test]
+fn a_list_with_a_computed_initial_value_keeps_its_name() {
+    let main = "FUNCTION Next : INT VAR_INPUT a : INT; END_VAR Next := a + 1; END_FUNCTION
+PROGRAM Main VAR k, l : INT; END_VAR k := GVL.base; l := GVL.computed; END_PROGRAM
+";
+    for attribute in ["", "{attribute 'qualified_only'}\n"] {
+        let list = format!("{attribute}VAR_GLOBAL base : INT := 4; computed : INT := Next(7); END_VAR\n");
+        let folder = Folder::with("computed_list", &[("GVL.st", &list), ("main.st", main)]);
+        let ran = folder.staunch("run . --dialect codesys --scans 1 --trace - --vars k,l -q");
+        assert_eq!(ran.out(0), "scan,time_ms,k,l\n1,0,4,8\n");
+    }
+}

@@ -4,7 +4,7 @@
 use crate::dialect::Dialect;
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
-use crate::{Code, Diagnostic, Span, ast};
+use crate::{Code, Diagnostic, Span, added, ast, start};
 
 /// The names of a file's lists.
 pub(super) struct Lists<'s> {
@@ -48,7 +48,7 @@ impl<'s> Lists<'s> {
             ast::Item::Globals(block) => Some(block.span),
             ast::Item::Pou(_) | ast::Item::Types(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => None,
         };
-        let spans: Option<Vec<_>> = file.items.iter().map(globals).collect();
+        let spans: Option<Vec<_>> = file.items.iter().filter(|it| !is_added(it)).map(globals).collect();
         if let Some([first, ..]) = spans.as_deref()
             && file.regions.len() <= 1
         {
@@ -79,6 +79,15 @@ impl<'s> Lists<'s> {
     pub fn around(&self, block: Span) -> Option<&'s str> {
         let before = self.named.iter().rev().find(|(start, _)| *start < block.start);
         before.filter(|(start, _)| *start >= self.end).map(|(_, name)| *name).or(self.file)
+    }
+}
+
+/// Whether the source has nothing of it: it starts what is global.
+fn is_added(item: &ast::Item<'_>) -> bool {
+    match item {
+        ast::Item::Globals(block) => block.vars.iter().flat_map(|it| &it.names).all(|it| added::is_added(it.text)),
+        ast::Item::Pou(pou) => pou.name.text == start::GLOBALS,
+        ast::Item::Types(_) | ast::Item::Configuration(_) | ast::Item::Test(_) => false,
     }
 }
 

@@ -17,10 +17,10 @@ impl<'s> Checker<'_, 's> {
         if dialect.is_none_or(|it| is_followed(it, Part::InputReadInCall)) {
             return;
         }
-        let Some(instance) = parts.parts.first().filter(|it| matches!(it.role, Role::Instance)).and(parts.instance())
-        else {
-            return self.note_target_passed(parts);
-        };
+        let instance = parts.parts.first().filter(|it| matches!(it.role, Role::Instance)).and(parts.instance());
+        let copied = if instance.is_some() { Part::InOutCopied } else { Part::InOutOfFunctionCopied };
+        self.note_target_passed(parts, copied);
+        let Some(instance) = instance else { return };
         let stored: Vec<_> = parts.parts.iter().map(|it| input_of(instance, &it.role)).collect();
         for (at, (part, written)) in parts.parts.iter().zip(&parts.written).enumerate() {
             let found = match part.role {
@@ -40,8 +40,8 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// A variable that a FUNCTION is given for an output and for a VAR_IN_OUT.
-    fn note_target_passed(&mut self, parts: &Parts) {
+    /// A variable that is given for an output and for a VAR_IN_OUT.
+    fn note_target_passed(&mut self, parts: &Parts, copied: Part) {
         let places = |is: fn(&Role) -> bool| {
             let all = parts.parts.iter().zip(&parts.written).filter(move |it| is(&it.0.role));
             all.filter_map(|(part, written)| Some((written.place()?, part.span)))
@@ -54,7 +54,7 @@ impl<'s> Checker<'_, 's> {
         };
         let found = places(|it| matches!(it, Role::Target(..))).find(|it| is_passed(it.0));
         if let Some((_, span)) = found {
-            self.note_use(Use::Part(Part::InOutOfFunctionCopied), span);
+            self.note_use(Use::Part(copied), span);
         }
     }
 

@@ -3,7 +3,7 @@
 //! instances. What lives for one call is assigned the values of variables, too.
 
 use super::computed::{Owner, When, is_computed_block};
-use super::expected::{By, Expected, Types};
+use super::expected::{Bounds, By, Expected, Types};
 use super::varying::Names;
 use crate::Span;
 use crate::added::ADDRESSED;
@@ -215,7 +215,7 @@ fn holds_address<'s>(initial: &Initial<'s>, expected: Expected<'_, 's>) -> bool 
             is_address(value) || expected.by(value).is_some() || expected.when(value).is_some()
         }
         InitialKind::Elements(elements) => {
-            let Some((_, element)) = expected.row() else { return false };
+            let Some((_, element)) = expected.elements() else { return false };
             elements.iter().flat_map(|it| &it.values).any(|it| holds_address(it, element))
         }
         InitialKind::Fields(fields) => {
@@ -260,9 +260,9 @@ fn rest<'s>(
             }
         },
         InitialKind::Fields(fields) => InitialKind::Fields(of_fields(fields, target, expected, found)),
-        InitialKind::Elements(elements) => match expected.row() {
-            Some((low, element)) if elements.iter().all(|it| count(it).is_some()) => {
-                InitialKind::Elements(of_elements(elements, target, (low, element), found))
+        InitialKind::Elements(elements) => match expected.elements() {
+            Some((bounds, element)) if elements.iter().all(|it| count(it).is_some()) => {
+                InitialKind::Elements(of_elements(elements, target, (&bounds, element), found))
             }
             _ => InitialKind::Elements(elements),
         },
@@ -295,7 +295,7 @@ fn of_fields<'s>(
 fn of_elements<'s>(
     elements: Vec<Element<'s>>,
     target: &Expr<'s>,
-    (low, expected): (&Expr<'s>, Expected<'_, 's>),
+    (bounds, expected): (&[Bounds<'_, 's>], Expected<'_, 's>),
     found: &mut Addresses<'s>,
 ) -> Vec<Element<'s>> {
     let mut at = 0;
@@ -309,7 +309,7 @@ fn of_elements<'s>(
         for _ in 0..count(&element).unwrap_or_default() {
             for value in &element.values {
                 let span = value.span;
-                let one = Expr { kind: ExprKind::Index(Box::new(target.clone()), vec![index(low, at, span)]), span };
+                let one = Expr { kind: ExprKind::Index(Box::new(target.clone()), indices(bounds, at, span)), span };
                 let values: Vec<_> = rest(value.clone(), &one, expected, found).into_iter().collect();
                 // A repeat without values has those of the element's type.
                 let single = literal(LiteralValue::Integer { value: 1, based: false }, span);
@@ -321,10 +321,24 @@ fn of_elements<'s>(
     left
 }
 
-/// The element `at` places after the first.
-fn index<'s>(low: &Expr<'s>, at: u64, span: Span) -> Expr<'s> {
-    let distance = literal(LiteralValue::Integer { value: at, based: false }, span);
-    Expr { kind: ExprKind::Binary(Box::new([low.clone(), distance]), BinaryOp::Add, span), span }
+/// The element `at` places after the first: the last index changes first. The bounds may be names.
+fn indices<'s>(bounds: &[Bounds<'_, 's>], at: u64, span: Span) -> Vec<Expr<'s>> {
+    let number = |value| literal(LiteralValue::Integer { value, based: false }, span);
+    let apply = |a: Expr<'s>, op, b: Expr<'s>| Expr { kind: ExprKind::Binary(Box::new([a, b]), op, span), span };
+    let mut places = number(at);
+    let mut found = Vec::new();
+    for (number_of, (low, high)) in bounds.iter().enumerate().rev() {
+        let (low, high) = ((*low).clone(), (*high).clone());
+        if number_of == 0 {
+            found.push(apply(low, BinaryOp::Add, places.clone()));
+            break;
+        }
+        let length = apply(apply(high, BinaryOp::Sub, low.clone()), BinaryOp::Add, number(1));
+        found.push(apply(low, BinaryOp::Add, apply(places.clone(), BinaryOp::Mod, length.clone())));
+        places = apply(places, BinaryOp::Div, length);
+    }
+    found.reverse();
+    found
 }
 
 /// How often the values of an element are there, where a number says it.

@@ -118,6 +118,9 @@ pub(super) struct Expected<'a, 's> {
     pub is_member: bool,
 }
 
+/// The lower and the upper bound of a dimension.
+pub(super) type Bounds<'a, 's> = (&'a Expr<'s>, &'a Expr<'s>);
+
 /// Aliases of aliases that are followed.
 const DEPTH: usize = 16;
 
@@ -222,13 +225,16 @@ impl<'a, 's> Expected<'a, 's> {
         Self { ty, is_member: true, ..*self }
     }
 
-    /// The lower bound and the elements of an array of one dimension. What a bound's names mean is known where the array
-    /// is declared.
-    pub fn row(&self) -> Option<(&'a Expr<'s>, Self)> {
+    /// The bounds and the elements of an array. What a bound's names mean is known where the array is declared.
+    pub fn elements(&self) -> Option<(Vec<Bounds<'a, 's>>, Self)> {
         let TypeKind::Array { bounds, element } = self.kind()? else { return None };
-        let [Bound::Range(low, _)] = bounds.as_slice() else { return None };
         let is_own = !self.is_member && matches!(self.ty?.kind, TypeKind::Array { .. });
-        (is_own || is_number(low)).then_some((low, Self { ty: Some(element), ..*self }))
+        let known = |it: &'a Bound<'s>| match it {
+            Bound::Range(low, high) if is_own || is_number(low) && is_number(high) => Some((low, high)),
+            Bound::Range(..) | Bound::Open(_) => None,
+        };
+        let bounds = bounds.iter().map(known).collect::<Option<_>>()?;
+        Some((bounds, Self { ty: Some(element), ..*self }))
     }
 }
 
