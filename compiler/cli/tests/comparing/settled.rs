@@ -210,3 +210,23 @@ fn a_counter_that_is_an_input_counts() {
     let (code, text) = compare("given", [&of("c.Q AND c.PV > 50"), &of("FALSE")], ["iec", "iec"], "z");
     assert!(code != Some(0), "{text}");
 }
+
+/// A count is compared with what has a range, or is kept where nothing asks for it.
+#[test]
+fn what_is_compared_with_a_range_or_kept_for_nobody_is_equal() {
+    let ranged = |most: u32| {
+        let variables = format!("c : CTU; END_VAR VAR_INPUT n : INT(1..{most});");
+        program("", &variables, "c(CU := x, PV := 3); z := c.CV >= n;")
+    };
+    let three = ranged(3);
+    equal("range", [&three, &three], ["iec", "openplc"], "z");
+    let four = ranged(4);
+    let (code, text) = compare("wide_range", [&four, &four], ["iec", "openplc"], "z");
+    assert!(code == Some(1) && text.starts_with("iec and openplc differ after 7 scans"), "{text}");
+    let kept =
+        |asked: &str| program("", "c : CTU; m : INT;", &format!("c(CU := x, PV := 3); m := c.CV; z := {asked};"));
+    equal("kept_for_nobody", [&kept("c.Q"), &kept("c.Q")], ["iec", "openplc"], "z");
+    let asked = kept("m > 3");
+    let (code, text) = compare("kept", [&asked, &asked], ["iec", "openplc"], "z");
+    assert!(code == Some(1) && text.starts_with("iec and openplc differ after 7 scans"), "{text}");
+}

@@ -19,8 +19,8 @@ impl Pair {
     }
 
     fn known(&self) -> Known<'_> {
-        let Self { sides, inputs, compared, counters, .. } = self;
-        Known { sides, inputs, compared, counters }
+        let Self { sides, inputs, compared, counters, idle, .. } = self;
+        Known { sides, inputs, compared, counters, idle }
     }
 
     /// The values at the start of the variables that one side's program alone writes.

@@ -8,6 +8,7 @@
 //! there, since both stop at the same limit. The other way round does not hold where they have come to that limit, so that a
 //! difference which is found past there is shown once more from the start.
 
+use super::idle::Idle;
 use super::scan::{Input, Matched};
 use super::side::Side;
 use crate::compare::program::bounds::{self, Bounds};
@@ -27,6 +28,8 @@ pub struct Known<'p> {
     pub compared: &'p [Matched],
     /// Counters that both sides have.
     pub counters: &'p [Matched],
+    /// What decides nothing of what is compared.
+    pub idle: &'p Idle,
 }
 
 impl Known<'_> {
@@ -148,7 +151,8 @@ fn joined(a: Bounds, b: Bounds) -> Option<Bounds> {
 
 impl Settled {
     pub fn of(known: Known<'_>) -> Self {
-        let found = [0, 1].map(|side: usize| bounds::of(&known.sides[side].program, &starts(known, side)));
+        let found = [0, 1]
+            .map(|side: usize| bounds::of(&known.sides[side].program, &starts(known, side), &known.idle.fields[side]));
         let both = known.counters.iter().map(|[a, b]| [Some(*a), Some(*b)]);
         let counts = |side: usize| {
             let all = known.sides[side].scalars.blocks.iter().enumerate().filter(|it| it.1.counts());

@@ -4,12 +4,13 @@
 //! What is not understood leaves a counter out. A counter is known by its declaration. Where a way leads to one through a
 //! parameter or a reference, or a copy holds one, the declaration is not known: then no counter of that type has bounds.
 
+use super::dependency::Declared;
 use super::flow::{Range, Ranges};
-use super::walked::Name;
+use super::walked::{Name, Walked};
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{
     BlockId, Conversion, Expr, ExprKind, FieldId, Op, Place, Program, Projection, Root, Routine, RoutineId, Statement,
-    StatementKind, Type, Value, reference,
+    StatementKind, Type, reference,
 };
 use staunch_runtime::{BlockInfo, Family, PinRole};
 use std::collections::{HashMap, HashSet};
@@ -30,10 +31,12 @@ impl Bounds {
     }
 }
 
-/// By the declarations of the counters that have bounds. `starts` are the values of variables at the start.
-pub fn of(program: &Program, starts: &HashMap<Name, Range>) -> HashMap<Name, Bounds> {
+/// By the declarations of the counters that have bounds. `starts` are the values of variables at the start; of what is assigned to
+/// `idle` variables nothing depends that is asked for.
+pub fn of(program: &Program, starts: &HashMap<Name, Range>, idle: &HashSet<Declared>) -> HashMap<Name, Bounds> {
     let ranges = Ranges::of(program, starts);
-    let mut walk = Walk { program, ranges, found: HashMap::new(), open: HashSet::new(), open_types: HashSet::new() };
+    let (open, open_types) = (HashSet::new(), HashSet::new());
+    let mut walk = Walk { program, ranges, idle, found: HashMap::new(), open, open_types };
     for (at, routine) in program.routines.iter().enumerate() {
         visit::statements(&routine.body, &mut |it| walk.statement((routine, RoutineId::next(at)), it));
     }
@@ -48,6 +51,7 @@ pub fn of(program: &Program, starts: &HashMap<Name, Range>) -> HashMap<Name, Bou
 struct Walk<'p> {
     program: &'p Program,
     ranges: Ranges<'p>,
+    idle: &'p HashSet<Declared>,
     found: HashMap<Name, (BlockId, Bounds)>,
     /// Counters that are used in a way that is not understood.
     open: HashSet<Name>,
@@ -73,9 +77,12 @@ impl Counter {
 impl Walk<'_> {
     fn statement(&mut self, at: (&Routine, RoutineId), statement: &Statement) {
         let routine = at.0;
+        if matches!(&statement.kind, StatementKind::Assign { target, .. } if self.is_idle(at, target)) {
+            return;
+        }
         let mut understood = Vec::new();
         visit::all_exprs(statement, &mut |it| {
-            understood.extend(self.comparison(routine, it));
+            understood.extend(self.comparison(at, it));
             if let ExprKind::AddressOf(place) = &it.kind {
                 self.access(routine, place, Access::Borrow);
             }
@@ -113,6 +120,13 @@ impl Walk<'_> {
                 self.access(routine, place, access);
             }
         });
+    }
+
+    fn is_idle(&self, at: (&Routine, RoutineId), place: &Place) -> bool {
+        match Walked::of(self.program, at, place).variable() {
+            Some(Name::Field(owner, field)) => self.idle.contains(&(owner, field)),
+            Some(Name::Local(..) | Name::Param(..)) | None => false,
+        }
     }
 
     /// What is not one of the uses that are understood.
@@ -211,16 +225,17 @@ impl Walk<'_> {
         bounds.add(greatest);
     }
 
-    /// A comparison of a count with a constant, and where it reads that.
-    fn comparison<'e>(&mut self, routine: &Routine, expr: &'e Expr) -> Option<&'e Place> {
+    /// A comparison of a count with a constant, or with what has a range, and where it reads the count.
+    fn comparison<'e>(&mut self, at: (&Routine, RoutineId), expr: &'e Expr) -> Option<&'e Place> {
         let ExprKind::Apply(Op::Lt | Op::Le | Op::Gt | Op::Ge | Op::Eq | Op::Ne, operands) = &expr.kind else {
             return None;
         };
         let [a, b] = operands.as_slice() else { return None };
         [(a, b), (b, a)].into_iter().find_map(|(own, other)| {
-            let number = other.as_const().and_then(Value::as_integer)?;
-            let (name, place) = self.count(routine, own)?;
-            self.compared(name, number);
+            let (name, place) = self.count(at.0, own)?;
+            let (least, greatest) = self.ranges.of_value(at, other);
+            self.compared(name, least);
+            self.compared(name, greatest);
             Some(place)
         })
     }
