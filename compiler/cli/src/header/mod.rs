@@ -9,15 +9,12 @@ mod types;
 mod variables;
 
 use names::Names;
-pub use names::is_prefix;
+pub use names::{PREFIX, is_prefix};
 use staunch_ir::layout::Layout;
 use staunch_ir::{FaultKind, Program};
 use staunch_runtime::Context;
 use std::path::Path;
 use types::Types;
-
-/// The prefix of symbols without another one.
-pub const PREFIX: &str = "staunch";
 
 /// The header that is written to `out`; on standard output it is named after the first `source`.
 pub fn header(program: &Program, prefix: &str, out: &Path, source: &Path) -> String {

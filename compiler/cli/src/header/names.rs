@@ -1,7 +1,9 @@
 //! Names in C.
 
-use super::PREFIX;
 use std::collections::HashSet;
+
+/// The prefix of symbols without another one.
+pub const PREFIX: &str = "staunch";
 
 /// Words that cannot be names in C or C++, or that compilers define, but can be names in Structured Text.
 const WORDS: &[&str] = &[
