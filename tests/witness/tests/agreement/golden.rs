@@ -55,6 +55,9 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     if settings.options.ctu_stop_at_pv || settings.options.openplc4_cd_rises || settings.options.s7_ld_edge {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
+    if settings.options.codesys_lreal_literals {
+        return Ok(Verdict::Rejected("a number that is an LREAL beside a REAL".to_owned()));
+    }
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
     let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "MID(", "DELETE(", "INSERT(", "LIMIT("];
     if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
