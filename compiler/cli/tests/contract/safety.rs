@@ -79,7 +79,7 @@ fn a_run_in_real_time_goes_on_without_a_trace() {
         match trace {
             "pipe" => assert!(Command::new("mkfifo").arg(folder.0.join("pipe")).status().unwrap().success()),
             // All of a picture is written at the end.
-            "full.svg" | "full.html" => std::os::unix::fs::symlink("/dev/full", folder.0.join(trace)).unwrap(),
+            "full.svg" | "full.html" => symlink("/dev/full", folder.0.join(trace)).unwrap(),
             _ => {}
         }
         let executable = Command::new(folder.0.join("plant"))
