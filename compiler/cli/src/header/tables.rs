@@ -33,7 +33,7 @@ fn table(text: &mut String, name: &str, rows: Vec<String>) {
 fn located(program: &Program, layout: &Layout) -> Vec<String> {
     let row = |address: &Address, offset: u64, size: u64, bit: Option<u64>| {
         let bit = bit.map_or("-1".to_owned(), |it| it.to_string());
-        format!("{{{}, {offset}u, {size}u, {bit}}}", quoted(&address.to_string()))
+        format!("{{{}, {offset}u, {size}u, {bit}}}", quoted(address.to_string()))
     };
     let base = layout.machine.globals;
     let fields = program.structure(program.globals).fields.iter().enumerate().filter_map(|(at, field)| {

@@ -96,7 +96,7 @@ impl<'a> Types<'a> {
         let fields = structure.fields.iter().enumerate();
         let fields = fields.map(|(at, it)| (it.name.as_str(), it.ty, self.layout.field(id, FieldId::next(at))));
         let members = self.members(fields);
-        let (align, size) = (u64::from(structure.align), self.layout.size(Type::Struct(id)));
+        let (align, size) = (structure.align, self.layout.size(Type::Struct(id)));
         let name = structure.name.clone();
         self.structure(&name, &tag, align, size, &members);
     }
