@@ -140,7 +140,7 @@ mod tests {
              PROGRAM Main_C VAR CU : INT; R : INT; END_VAR END_PROGRAM",
             "mixer.h",
         );
-        let (_, own) = text.split_once("staunch_retained;").unwrap();
+        let (_, own) = text.split_once("staunch_retained;").expect("the shared types come first");
         let defined = own.lines().filter_map(|it| it.strip_prefix("#define ")?.split([' ', '(']).next());
         let mut names: Vec<&str> = defined.collect();
         let all = names.len();
