@@ -19,8 +19,9 @@ use types::Types;
 /// The header that is written to `out`; on standard output it is named after the first `source`.
 pub fn header(program: &Program, prefix: &str, out: &Path, source: &Path) -> String {
     let layout = Layout::new(program);
-    let guard = guard(out, source);
-    let mut names = Names::new(prefix, &guard);
+    let file = file_name(out, source);
+    let mut names = Names::new(prefix, &file);
+    let guard = names.own(&file);
     let mut types = Types::new(program, &layout, &names);
     types.state();
     let prototypes = prototypes::prototypes(&mut types);
@@ -112,10 +113,11 @@ extern const uint64_t {map_len};
     )
 }
 
-fn guard(out: &Path, source: &Path) -> String {
+/// What the guard is named after.
+fn file_name(out: &Path, source: &Path) -> String {
     let out = if out == Path::new("-") { &source.with_extension("h") } else { out };
     let name = out.file_name().map(|it| it.to_string_lossy().into_owned()).unwrap_or_default();
-    format!("STAUNCH_{}", names::upper(&[&name]))
+    names::upper(&[&name])
 }
 
 #[cfg(test)]

@@ -81,8 +81,8 @@ pub struct Names {
 }
 
 impl Names {
-    pub fn new(prefix: &str, guard: &str) -> Self {
-        let own = OWN.into_iter().chain(["RETAINED"]).chain(guard.strip_prefix("STAUNCH_"));
+    pub fn new(prefix: &str, file: &str) -> Self {
+        let own = OWN.into_iter().chain(["RETAINED", file]);
         Self { prefix: prefix.to_owned(), taken: own.map(str::to_owned).collect() }
     }
 
@@ -135,10 +135,17 @@ pub fn variable(name: &str) -> String {
     let mut name = plain(name);
     let is_reserved =
         name.strip_prefix('_').is_some_and(|it| it.starts_with(|it: char| it == '_' || it.is_ascii_uppercase()));
-    if is_reserved || WORDS.contains(&name.as_str()) {
+    if is_reserved || is_macro(&name) || WORDS.contains(&name.as_str()) {
         name.push('_');
     }
     name
+}
+
+/// Whether a header that is included may define it: `INT16_MAX`.
+fn is_macro(name: &str) -> bool {
+    let limits = ["INT", "UINT", "SIZE", "PTRDIFF", "SIG_ATOMIC", "WCHAR", "WINT"];
+    let endings = ["_MAX", "_MIN", "_C", "_WIDTH"];
+    name == "NULL" || limits.iter().any(|it| name.starts_with(it)) && endings.iter().any(|it| name.ends_with(it))
 }
 
 pub fn upper(parts: &[&str]) -> String {

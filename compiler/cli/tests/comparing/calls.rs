@@ -7,6 +7,9 @@ const OWN: Folder = Folder("calls");
 const POUS: &str = "FUNCTION_BLOCK Two
 VAR_INPUT a : INT; b : INT; END_VAR
 VAR_OUTPUT o, p : INT; END_VAR
+METHOD PUBLIC Read : INT
+Read := a + p;
+END_METHOD
 o := a + b; p := a;
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK Inout
@@ -49,6 +52,8 @@ fn what_a_call_is_on_openplc_is_not_equal() {
         ("read", "openplc", "x(a := n, b := x.a); q := x.o;", one_by_one),
         ("read", "openplc4", "x(a := n, b := x.a); q := x.o;", one_by_one),
         ("before", "openplc", "x(b := x.a, a := n); q := x.o;", one_by_one),
+        ("by_method", "openplc4", "x(a := n, b := x.Read()); q := x.o;", one_by_one),
+        ("target_by_method", "openplc4", "x(p => t[x.Read() MOD 10]); q := t[1];", "it is looked up after the call"),
         ("pin", "openplc4", "d(PT := T#20ms, IN := d.PT = T#20ms); IF d.Q THEN q := n; END_IF;", one_by_one),
         (
             "target",

@@ -6,7 +6,7 @@ use std::process::Command;
 const PLANT: &str = "\
 TYPE
     Color : (Red, Green := 5, Blue) BYTE;
-    Rec : STRUCT a : INT; b : ARRAY[0..2, 1..2] OF REAL; s : STRING[10]; int : INT; END_STRUCT
+    Rec : STRUCT a : INT; b : ARRAY[0..2, 1..2] OF REAL; s : STRING[10]; int, INT16_MAX : INT; END_STRUCT
 END_TYPE
 FUNCTION_BLOCK Nothing
 ;
@@ -75,7 +75,7 @@ int main(void) {
         }
     }
     printf("%d %d %d %.1f %.*s %d\n", state.globals.run, state.Line.motors[1].on, state.Line.motors[1].c.CV,
-           (double)state.Line.rec.b[1][1], state.Line.rec.s.length, (const char *)state.Line.rec.s.units, state.Line.rec.int_);
+           (double)state.Line.rec.b[1][1], state.Line.rec.s.length, (const char *)state.Line.rec.s.units, state.Line.rec.int_ + state.Line.rec.INT16_MAX_);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < PLANT_RETAINED_COUNT; i++) {
         kept += retained[i].size;
@@ -88,7 +88,7 @@ int main(void) {
 /// In C++, with the header of another program.
 const OTHER: &str = r#"
 #include "plant.h"
-#include "pump.h"
+#include "pump/plant.h"
 
 static pump_state state;
 
@@ -120,8 +120,10 @@ fn a_host_in_c_has_two_programs() {
     let host = HOST.replace("#include <string.h>\n", "#include <string.h>\n\nint other(uint8_t *plant);\n");
     let files = [("plant.st", PLANT), ("pump.st", PUMP), ("host.c", &host), ("other.cpp", OTHER)];
     let folder = Folder::with("header", &files);
-    for name in ["plant", "pump"] {
-        folder.staunch(&format!("build {name}.st --emit header --prefix {name} -o {name}.h -q")).out(0);
+    // Two headers with one file's name may be included.
+    std::fs::create_dir_all(folder.0.join("pump")).unwrap();
+    for (name, header) in [("plant", "plant.h"), ("pump", "pump/plant.h")] {
+        folder.staunch(&format!("build {name}.st --emit header --prefix {name} -o {header} -q")).out(0);
         folder.staunch(&format!("build {name}.st --emit lib --prefix {name} -o lib{name}.a -q")).out(0);
     }
     compiled(&folder, "cc", "-std=c11 -c host.c -o host.o");

@@ -63,6 +63,8 @@ pub(crate) struct Part {
 pub(crate) struct Parts {
     pub written: Vec<Written>,
     pub parts: Vec<Part>,
+    /// How many statements there are before those that evaluate the parts.
+    pub before: usize,
 }
 
 impl Parts {

@@ -148,7 +148,7 @@ impl<'s> Checker<'_, 's> {
         if self.decl.dialect(span).wants_all_positions() {
             self.require_all(info.name, &parameters, &given, arguments, |_, _| false, span)?;
         }
-        let mut parts = Parts::default();
+        let mut parts = Parts { before: self.block.len(), ..Parts::default() };
         let place = found.place;
         parts.push(Held::Place(place.clone()), Role::Instance, callee);
         let mut complete = true;
@@ -250,7 +250,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(dispatch) = &dispatch {
             self.check_in_outs(dispatch, slot, callee)?;
         }
-        let mut parts = Parts::default();
+        let mut parts = Parts { before: self.block.len(), ..Parts::default() };
         parts.push(Held::Place(found.place), Role::Instance, callee);
         self.start_inputs(&mut parts, slot, &given, callee)?;
         let mut references = vec![None; formals.len()];

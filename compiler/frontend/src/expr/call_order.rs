@@ -8,7 +8,7 @@ use crate::dialect::rules::is_followed;
 use crate::types::signature::pin_place;
 use crate::{Span, ast};
 use ast::ArgumentKind;
-use staunch_ir::{Expr, Location, Part, Place, Section, Statement, Type, Use};
+use staunch_ir::{Argument, Expr, Location, Part, Place, Section, Statement, StatementKind, Type, Use};
 
 impl<'s> Checker<'_, 's> {
     /// An input that another argument reads, and a target that is another one after the call. `call` is its statements.
@@ -22,6 +22,7 @@ impl<'s> Checker<'_, 's> {
         self.note_target_passed(parts, copied);
         let Some(instance) = instance else { return };
         let stored: Vec<_> = parts.parts.iter().map(|it| input_of(instance, &it.role)).collect();
+        self.note_calls_in_arguments(parts, &stored, call);
         for (at, (part, written)) in parts.parts.iter().zip(&parts.written).enumerate() {
             let found = match part.role {
                 Role::Stored(..) | Role::Passed(_) => {
@@ -37,6 +38,29 @@ impl<'s> Checker<'_, 's> {
             if let Some(found) = found {
                 self.note_use(Use::Part(found), part.span);
             }
+        }
+    }
+
+    /// Calls in arguments and targets that get the instance: what they read of it may be what the call stores.
+    fn note_calls_in_arguments(&mut self, parts: &Parts, stored: &[Option<Place>], call: &[Statement]) {
+        let mut given = Vec::new();
+        for hoisted in self.block.iter().skip(parts.before) {
+            if let StatementKind::Call { instance, arguments, .. } = &hoisted.kind {
+                let passed = arguments.iter().filter_map(|it| match it {
+                    Argument::Reference(place) => Some(place),
+                    Argument::Value(_) => None,
+                });
+                given.extend(instance.iter().chain(passed).map(|it| Held::Value(loaded(it))));
+            }
+        }
+        let Some(span) = parts.parts.last().map(|it| it.span) else { return };
+        let stores: Vec<_> = stored.iter().flatten().map(stored_as_it_is).collect();
+        let has_target = parts.parts.iter().any(|it| matches!(it.role, Role::Target(..)));
+        if given.iter().any(|it| self.held_changes(&stores, it)) {
+            self.note_use(Use::Part(Part::InputReadInCall), span);
+        }
+        if has_target && given.iter().any(|it| self.held_changes(call, it)) {
+            self.note_use(Use::Part(Part::TargetChanged), span);
         }
     }
 
