@@ -456,6 +456,7 @@ impl<'a> Machine<'a> {
         let of_logix = time == Elementary::Time && self.declared.family == Family::Logix;
         let factor = in_repr(Scalar::I64(if of_logix { 1000 } else { unit(time) }), wide).as_scalar()?;
         match (from.is_time(), to.is_time()) {
+            (true, false) if to == Elementary::Bool => Ok(Value::bool(value.as_integer()? != 0)),
             (true, false) => {
                 let count = self.applied("DIV", wide, &[in_repr(scalar, wide).as_scalar()?, factor], at)?;
                 Ok(in_repr(count.as_scalar()?, to))

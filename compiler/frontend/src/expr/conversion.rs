@@ -150,6 +150,10 @@ impl<'s> Checker<'_, 's> {
             (None, None) => self.number_as(value, to, span),
             (Some(_), None) if rules.time_is_seconds() => self.seconds(value, to, span),
             (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
+            (Some(_), None) if to == Elementary::Bool && from.is_duration() => {
+                let nanoseconds = self.nanoseconds_of(value);
+                Some(self.convert(Conversion::Value, Type::BOOL, nanoseconds))
+            }
             (Some(unit), None) => {
                 let (unit, since) = self.counted_by(from, unit, span);
                 let nanoseconds = self.nanoseconds_of(value);

@@ -28,6 +28,7 @@ impl<'s> Checker<'_, 's> {
         }
         if op == BinaryOp::Power
             && self.decl.dialect(op_span).raises_before_signs()
+            && self.begins_with_sign(left, op_span)
             && let Some((sign, base)) = leading_sign(left)
         {
             let power = ast::ExprKind::Binary(Box::new([base, right.clone()]), op, op_span);
@@ -61,6 +62,12 @@ impl<'s> Checker<'_, 's> {
         }
         let sides = Sides { a, b, left: left.span, right: right.span, op, op_span, span, hint };
         self.combine(sides)
+    }
+
+    /// Whether a sign is written before the operator's left side: neither in parentheses, as an argument of EXPT is, nor in a literal,
+    /// `REAL#-2.5`.
+    fn begins_with_sign(&self, left: &ast::Expr<'s>, op_span: Span) -> bool {
+        left.span.end <= op_span.start && self.decl.log.sources.text(left.span).starts_with(['-', '+'])
     }
 
     /// The bit string that a call or a number on the left listens to: that of the variable on the right.
