@@ -161,7 +161,7 @@ impl Use {
             Self::Function(name) => name.to_owned(),
             Self::Part(it) => it.words().to_owned(),
             Self::Operator(operator, class) => format!("`{operator}` of {}", class.name()),
-            Self::Conversion(from, to) => format!("{} to {}", from.name(), to.name()),
+            Self::Conversion(from, to) => format!("a conversion from {} to {}", of_class(from), of_class(to)),
         }
     }
 
@@ -173,6 +173,22 @@ impl Use {
             (Self::Type(_) | Self::Function(_) | Self::Part(_), _) => self == found,
             (Self::Operator(..) | Self::Conversion(..), _) => false,
         }
+    }
+}
+
+/// The values of a class, in words.
+const fn of_class(class: Class) -> &'static str {
+    match class {
+        Class::String | Class::Chars => "a STRING",
+        Class::Char => "a CHAR",
+        Class::Duration => "a TIME",
+        Class::Date => "a date or time of day",
+        Class::Real => "a REAL",
+        Class::Int | Class::Signed | Class::Unsigned => "an integer",
+        Class::Num | Class::Magnitude => "a number",
+        Class::Bit => "a bit string",
+        Class::Elementary => "a value",
+        Class::Any => "anything",
     }
 }
 

@@ -71,7 +71,23 @@ const WORDS: &[&str] = &[
 ];
 
 /// Macros that every header has, without the prefix.
-const OWN: [&str; 8] = ["STATE_SIZE", "STATE_ALIGN", "SHARED", "ASSERT", "ALIGNED", "TURNS", "TASKS", "LOCATED"];
+const OWN: [&str; 12] = [
+    "STATE_SIZE",
+    "STATE_ALIGN",
+    "SHARED",
+    "ASSERT",
+    "ALIGNED",
+    "TURNS",
+    "TASKS",
+    "TASKS_COUNT",
+    "LOCATED",
+    "LOCATED_COUNT",
+    "RETAINED",
+    "RETAINED_COUNT",
+];
+
+/// What every header names with the prefix, and no structure of the program's may be.
+const OWN_TAGS: [&str; 5] = ["state", "context", "task", "located", "retained"];
 
 /// The names of one header.
 pub struct Names {
@@ -82,7 +98,7 @@ pub struct Names {
 
 impl Names {
     pub fn new(prefix: &str, file: &str) -> Self {
-        let own = OWN.into_iter().chain(["RETAINED", file]);
+        let own = OWN.into_iter().chain([file]);
         Self { prefix: prefix.to_owned(), taken: own.map(str::to_owned).collect() }
     }
 
@@ -98,7 +114,11 @@ impl Names {
 
     /// A structure of the program's: with the prefix, if it is not the usual one.
     pub fn tag(&self, name: &str) -> String {
-        if self.prefix == PREFIX { plain(name) } else { format!("{}_{}", self.prefix, plain(name)) }
+        let tag = if self.prefix == PREFIX { plain(name) } else { self.symbol(&plain(name)) };
+        match OWN_TAGS.iter().any(|own| self.symbol(own) == tag) {
+            true => tag + "_",
+            false => tag,
+        }
     }
 
     /// A macro that every header has.

@@ -6,7 +6,9 @@ use std::process::Command;
 const PLANT: &str = "\
 TYPE
     Color : (Red, Green := 5, Blue) BYTE;
-    Rec : STRUCT a : INT; b : ARRAY[0..2, 1..2] OF REAL; s : STRING[10]; int, INT16_MAX : INT; END_STRUCT
+    state : STRUCT of_plant : INT; END_STRUCT
+    Tasks : (Count, Rest);
+    Rec : STRUCT own : state; work : Tasks; a : INT; b : ARRAY[0..2, 1..2] OF REAL; s : STRING[10]; int, INT16_MAX : INT; END_STRUCT
 END_TYPE
 FUNCTION_BLOCK Nothing
 ;

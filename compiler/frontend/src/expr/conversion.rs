@@ -150,7 +150,11 @@ impl<'s> Checker<'_, 's> {
             (None, None) => self.number_as(value, to, span),
             (Some(_), None) if rules.time_is_seconds() => self.seconds(value, to, span),
             (None, Some(_)) if rules.time_is_seconds() => self.time_of_seconds(value, from, to, span),
-            (Some(_), None) if to == Elementary::Bool && from.is_duration() && !rules.rounds_by_c() => {
+            (Some(_), None)
+                if to == Elementary::Bool
+                    && from.is_duration()
+                    && rules.time_as_number.choice != TimeAsNumber::CutMilliseconds =>
+            {
                 let nanoseconds = self.nanoseconds_of(value);
                 Some(self.convert(Conversion::Value, Type::BOOL, nanoseconds))
             }

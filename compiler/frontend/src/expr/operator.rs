@@ -702,7 +702,7 @@ fn immediate(value: i128, ty: Elementary) -> Option<i128> {
 }
 
 /// CODESYS lets a signed and an unsigned 64-bit integer meet at the signed one.
-fn mixed_signs(a: Elementary, b: Elementary, mixes: bool) -> Option<Elementary> {
+pub(super) fn mixed_signs(a: Elementary, b: Elementary, mixes: bool) -> Option<Elementary> {
     let (a, b) = (as_number(a), as_number(b));
     (mixes && a.is_integer() && b.is_integer()).then_some(Elementary::Lint)
 }

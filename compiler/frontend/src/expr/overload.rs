@@ -5,9 +5,9 @@
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::operand::Operand;
-use super::operator::{beside, literal_types};
+use super::operator::{beside, literal_types, mixed_signs};
 use crate::dialect::Dialect;
-use crate::dialect::rules::Rules;
+use crate::dialect::rules::{NarrowIntegers, Rules};
 use crate::types::coercion::{Join, as_number, join, join_in};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::narrow::is_narrow;
@@ -62,7 +62,7 @@ impl<'s> Checker<'_, 's> {
         match takes {
             Takes::Common(expected) => self.operand(value, expected),
             Takes::Type(ty) => self.value(value, ty).map(Operand::Typed),
-            Takes::Class(class) => self.of_class(class, value, parameter, name).map(Operand::Typed),
+            Takes::Class(class) => self.of_class(class, value, parameter, name),
             Takes::Text(wide) => self.text(value, wide, name).map(Operand::Typed),
         }
     }
@@ -118,9 +118,12 @@ impl<'s> Checker<'_, 's> {
             false => self.common_type(signature.class, &at_t, hint, name)?,
         };
         let ty = self.computed_type(signature.class, own, at_t.iter().map(|it| it.0), name.span);
+        let cuts = self.cuts_counts(signature, name.span);
         let mut done = Vec::new();
         for (at, operand) in operands.into_iter().enumerate() {
-            done.push(match (operand, kind(signature, at)) {
+            let kind = kind(signature, at);
+            let operand = if cuts && kind != Kind::T { operand.cut() } else { operand };
+            done.push(match (operand, kind) {
                 (operand, Kind::T) => {
                     self.set_apart(before.as_deref_mut(), at, |this| this.at_type(operand, ty, values[at].span))?
                 }
@@ -129,6 +132,17 @@ impl<'s> Checker<'_, 's> {
             });
         }
         Some(Resolved { ty, own, operands: done })
+    }
+
+    /// Whether a count or a position is an argument like another, which counts as stored: to CODESYS the functions on texts are a
+    /// library's, and its shifts operators; MATIEC makes every function one of C. STruC++ takes it as it was computed.
+    fn cuts_counts(&self, signature: &Signature, span: Span) -> bool {
+        let rules = self.decl.dialect(span).rules();
+        match rules.narrow_integers.choice {
+            NarrowIntegers::At32Bits => signature.class == Class::String && !rules.ranks_numbers(),
+            NarrowIntegers::AsCPromotes => true,
+            NarrowIntegers::AtTheirType | NarrowIntegers::MixedAsCPromotes => false,
+        }
     }
 
     /// What chooses is evaluated before all inputs, wherever it is written: of these only the one that is chosen
@@ -235,21 +249,28 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// An operand of a class by itself, at its own type.
-    fn of_class(&mut self, class: Class, value: &ast::Expr<'s>, parameter: &str, name: ast::Name<'s>) -> Option<Expr> {
-        let expr = match self.operand(value, None)? {
-            Operand::Typed(expr) | Operand::Promoted(expr, _) => expr,
+    fn of_class(
+        &mut self,
+        class: Class,
+        value: &ast::Expr<'s>,
+        parameter: &str,
+        name: ast::Name<'s>,
+    ) -> Option<Operand> {
+        let operand = match self.operand(value, None)? {
+            typed @ (Operand::Typed(_) | Operand::Promoted(..)) => typed,
             literal @ Operand::Real { .. } if class != Class::Int => {
-                return self.coerce(literal, Type::LREAL, value.span);
+                return self.coerce(literal, Type::LREAL, value.span).map(Operand::Typed);
             }
-            literal => return self.coerce(literal, Type::LINT, value.span),
+            literal => return self.coerce(literal, Type::LINT, value.span).map(Operand::Typed),
         };
-        if self.admits(class, expr.ty, value.span) {
-            return Some(expr);
+        let ty = operand.computed_at()?;
+        if self.admits(class, ty, value.span) {
+            return Some(operand);
         }
-        let found = self.type_name(expr.ty);
+        let found = self.type_name(ty);
         let message = format!("`{}` takes {} as {parameter}, but this is {found}", name.text, wanted(class));
         let mut error = Diagnostic::new(Code::E0201, value.span, message).label(format!("this is {found}"));
-        if let Type::Elementary(it) = expr.ty
+        if let Type::Elementary(it) = ty
             && class == Class::Int
             && (it.is_real() || it.is_bits())
         {
@@ -410,8 +431,9 @@ impl<'s> Checker<'_, 's> {
             (Type::Elementary(x), Type::Elementary(y)) => {
                 let dialect = self.decl.dialect(span);
                 let join = join_in(dialect);
-                let numbers = || join(as_number(x), as_number(y));
-                let mixed = || dialect.mixes_bits_and_integers().then(numbers).flatten();
+                let mixes = dialect.mixes_bits_and_integers();
+                let numbers = || join(as_number(x), as_number(y)).or_else(|| mixed_signs(x, y, mixes));
+                let mixed = || mixes.then(numbers).flatten();
                 join(x, y).or_else(mixed).map(Type::Elementary)
             }
             (Type::String(x), Type::String(y)) if x.wide == y.wide => Some(Type::String(x.max(y))),

@@ -327,12 +327,9 @@ fn indices<'s>(bounds: &[Bounds<'_, 's>], at: u64, span: Span) -> Vec<Expr<'s>> 
     let apply = |a: Expr<'s>, op, b: Expr<'s>| Expr { kind: ExprKind::Binary(Box::new([a, b]), op, span), span };
     let mut places = number(at);
     let mut found = Vec::new();
-    for (number_of, (low, high)) in bounds.iter().enumerate().rev() {
+    // The first index comes round, too: a value past the array is reported with the others that are too many.
+    for (low, high) in bounds.iter().rev() {
         let (low, high) = ((*low).clone(), (*high).clone());
-        if number_of == 0 {
-            found.push(apply(low, BinaryOp::Add, places.clone()));
-            break;
-        }
         let length = apply(apply(high, BinaryOp::Sub, low.clone()), BinaryOp::Add, number(1));
         found.push(apply(low, BinaryOp::Add, apply(places.clone(), BinaryOp::Mod, length.clone())));
         places = apply(places, BinaryOp::Div, length);

@@ -1,4 +1,4 @@
-//! Which counts matter only by comparisons with constants, and between which constants: a CTU above all of them and above
+//! Which counts matter only by comparisons with constants and with values whose range is known, and within which limits: a CTU above all of them and above
 //! every preset stays above them until it is reset, and a CTD below them stays below until it is loaded.
 //!
 //! What is not understood leaves a counter out. A counter is known by its declaration. Where a way leads to one through a

@@ -167,7 +167,7 @@ impl Report<'_> {
                 it.words
             );
         }
-        text += &judged.variants();
+        text += &judged.variants(cause.pitfall.is_some());
         if !matches!(judged.verdict, Verdict::Differs { .. }) {
             world.open.iter().chain(&world.in_common).for_each(|it| _ = writeln!(text, "{it}"));
         }
@@ -212,7 +212,7 @@ impl Judged<'_> {
     }
 
     /// What the vendors' documents leave open, and what each answer comes to.
-    fn variants(&self) -> String {
+    fn variants(&self, is_advised: bool) -> String {
         if self.others.is_empty() {
             return String::new();
         }
@@ -221,7 +221,7 @@ impl Judged<'_> {
         for other in self.others {
             let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
         }
-        if matches!(self.verdict, Verdict::Differs { .. }) {
+        if is_advised && matches!(self.verdict, Verdict::Differs { .. }) {
             let _ = write!(
                 text,
                 " The advice is valid with {}, but perhaps not with other settings.",
