@@ -23,6 +23,7 @@ mod turns;
 mod architecture;
 mod documents;
 mod layers;
+mod layout;
 mod packages;
 mod pages;
 mod rules;

@@ -1,11 +1,12 @@
 //! `staunch.toml`: the settings of the command and of build scripts, for the folder it is in and those
 //! below.
 
+mod layout;
 mod modbus;
 
 pub use modbus::Modbus;
 
-use staunch_frontend::{Dialect, Level, Levels, nearest};
+use staunch_frontend::{Dialect, Level, Levels, format, nearest};
 use std::path::{Path, PathBuf};
 
 /// What a project file says. Paths are relative to its folder.
@@ -40,6 +41,8 @@ pub struct Project {
     pub verbose: bool,
     /// `[[modbus]]`
     pub modbus: Vec<Modbus>,
+    /// `[fmt]`
+    pub layout: format::Style,
     text: String,
 }
 
@@ -157,7 +160,7 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 22] = [
+const SETTINGS: [&str; 23] = [
     "dialect",
     "files",
     "libraries",
@@ -180,6 +183,7 @@ const SETTINGS: [&str; 22] = [
     "quiet",
     "verbose",
     "modbus",
+    "fmt",
 ];
 
 fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), String> {
@@ -210,6 +214,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "quiet" => project.quiet = flag(key, value)?,
         "verbose" => project.verbose = flag(key, value)?,
         "modbus" => project.modbus = modbus::read(value)?,
+        "fmt" => project.layout = layout::read(value)?,
         _ => {
             return Err(match nearest(key, SETTINGS.into_iter()) {
                 Some(near) => format!("there is no setting `{key}`; did you mean `{near}`?"),

@@ -39,6 +39,8 @@ pub enum Command {
     Compare(Compare),
     /// Write what is read of any system's files as one file of Structured Text
     Convert(Convert),
+    /// Lay out sources: indentation, spaces, columns of declarations, the letters of keywords
+    Fmt(Fmt),
     /// Print the long text of a diagnostic, or the list of all
     Explain(Explain),
     /// Print completions for a shell
@@ -350,6 +352,18 @@ pub struct Bench {
     /// The back end that runs the program
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Fmt {
+    #[command(flatten)]
+    pub files: Files,
+    /// Write nothing; exit code 1 if a file would change
+    #[arg(long)]
+    pub check: bool,
+    /// Write nothing; show what would change
+    #[arg(long)]
+    pub diff: bool,
 }
 
 #[derive(Clone, Debug, Args)]

@@ -47,7 +47,8 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
     Ok(sources)
 }
 
-fn found(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+/// The files that the arguments name, each once, folders in sorted order.
+pub fn found(arguments: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     let (mut paths, mut folders) = (Vec::new(), HashSet::new());
     for argument in arguments {
         collect(argument, 0, (&mut paths, &mut folders))?;
@@ -103,7 +104,7 @@ fn source(path: &Path) -> Result<Source, String> {
 }
 
 /// A file as messages name it, and what is in it.
-fn bytes(path: &Path) -> Result<(String, Vec<u8>), String> {
+pub fn bytes(path: &Path) -> Result<(String, Vec<u8>), String> {
     let mut bytes = Vec::new();
     let name = if path == Path::new("-") { "<stdin>".to_owned() } else { shown(path) };
     let read = if path == Path::new("-") {

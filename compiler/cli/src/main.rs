@@ -17,6 +17,7 @@ mod report;
 
 mod archive;
 mod build;
+mod fmt;
 mod header;
 mod link;
 mod linker;
@@ -110,6 +111,7 @@ fn dispatch(cli: Cli) -> u8 {
         Command::Convert(it) => {
             Session::start_to_build(&cli.common, &it.files).and_then(|session| convert::convert(&session, it))
         }
+        Command::Fmt(it) => fmt::fmt(&cli.common, it),
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => {

@@ -118,13 +118,7 @@ impl Session {
         flag: &str,
         compile: impl FnOnce(&Sources, &Options) -> Compilation,
     ) -> Result<(Self, usize), String> {
-        let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
-        let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
-        let mut project = Project::find(folder)?.unwrap_or_default();
-        let named = if files.files.is_empty() { seen(&project, "files", &project.files)? } else { files.files.clone() };
-        if named.is_empty() {
-            return Err("name a source file or folder, or list `files` in staunch.toml".to_owned());
-        }
+        let (mut project, named) = named(files)?;
         if let Some(table) = named.iter().find(|it| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("csv"))) {
             let source = table.with_extension("st");
             let text = format!("{} is a table, not a source: name the source next to it", table.display());
@@ -408,6 +402,18 @@ fn shows_colors() -> bool {
 fn covered(sources: &Sources, is_covered: bool) -> Option<u16> {
     let own = sources.files().iter().filter(|it| !it.is_of_library()).count();
     is_covered.then(|| u16::try_from(own).unwrap_or(u16::MAX))
+}
+
+/// The project that files are of, and what is named on the command line or in it.
+pub fn named(files: &Files) -> Result<(Project, Vec<PathBuf>), String> {
+    let near = files.files.first().filter(|it| it.as_path() != Path::new("-"));
+    let folder = near.map_or(Path::new("."), |it| if it.is_dir() { it } else { parent(it) });
+    let project = Project::find(folder)?.unwrap_or_default();
+    let named = if files.files.is_empty() { seen(&project, "files", &project.files)? } else { files.files.clone() };
+    match named.is_empty() {
+        true => Err("name a source file or folder, or list `files` in staunch.toml".to_owned()),
+        false => Ok((project, named)),
+    }
 }
 
 /// Paths of the project file, as seen from the current folder.

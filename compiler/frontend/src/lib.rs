@@ -33,7 +33,7 @@ mod program;
 
 mod lints;
 
-pub use staunch_syntax::{ast, vendor};
+pub use staunch_syntax::{ast, format, vendor};
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
 pub use dialect::{Dialect, rules};

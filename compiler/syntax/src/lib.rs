@@ -9,6 +9,7 @@ pub mod spelling;
 
 pub mod ast;
 pub mod foreign;
+pub mod format;
 pub mod lex;
 pub mod parse;
 

@@ -260,7 +260,7 @@ impl Source {
     }
 
     /// UTF-8 or UTF-16, with or without a byte order mark; any other text is read as Windows-1252.
-    fn decoded(path: impl Into<String>, bytes: &[u8]) -> Self {
+    pub(crate) fn decoded(path: impl Into<String>, bytes: &[u8]) -> Self {
         if let Some((mark, text)) = utf16(bytes) {
             return Self { encoding: Encoding { mark, units: Units::Utf16 }, ..Self::new(path, text) };
         }
@@ -270,6 +270,19 @@ impl Source {
             Err(_) => (Units::Windows1252, bytes.iter().map(|it| windows_1252(*it)).collect()),
         };
         Self { encoding: Encoding { mark, units }, ..Self::new(path, text) }
+    }
+
+    /// A text in the encoding of this file, whose bytes are given; `None` where it has characters that cannot be written so.
+    pub(crate) fn encode(&self, text: &str, file: &[u8]) -> Option<Vec<u8>> {
+        let mark = file.get(..usize::try_from(self.encoding.mark).ok()?)?;
+        let is_big = file.first().is_some_and(|it| matches!(it, 0xFE | 0));
+        let units = match self.encoding.units {
+            Units::Utf8 => text.as_bytes().to_vec(),
+            Units::Windows1252 => text.chars().map(windows_1252_byte).collect::<Option<_>>()?,
+            Units::Utf16 if is_big => text.encode_utf16().flat_map(u16::to_be_bytes).collect(),
+            Units::Utf16 => text.encode_utf16().flat_map(u16::to_le_bytes).collect(),
+        };
+        Some([mark, &units].concat())
     }
 
     /// Where a byte of the text is in the file as it was read.
@@ -401,6 +414,11 @@ fn windows_1252(byte: u8) -> char {
         0x80..=0x9f => UPPER[usize::from(byte - 0x80)],
         _ => char::from(byte),
     }
+}
+
+/// The byte of a character in Windows-1252.
+fn windows_1252_byte(character: char) -> Option<u8> {
+    (0..=u8::MAX).find(|it| windows_1252(*it) == character)
 }
 
 impl Sources {

@@ -9,6 +9,7 @@ mod cache;
 mod check;
 mod coverage;
 mod external;
+mod fmt;
 mod header;
 #[cfg(unix)]
 mod io;

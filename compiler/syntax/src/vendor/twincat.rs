@@ -5,6 +5,7 @@
 use super::assembly::{Assembly, Chunk, Trouble};
 use super::unit::{Body, Unit, What};
 use super::xml::{Broken, Element, Part, Reader};
+use core::ops::Range;
 
 /// Reads what follows the root.
 pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
@@ -14,6 +15,21 @@ pub fn read<'t>(file: &'t str, mut reader: Reader<'t>) -> Assembly {
         out.problem(Trouble::Broken, message, &broken.place);
     }
     out
+}
+
+/// The declarations and bodies that are in CDATA sections of one piece; `None` if the file is not well-formed.
+pub fn texts(mut reader: Reader<'_>) -> Option<Vec<Range<usize>>> {
+    let mut texts = Vec::new();
+    while let Some(part) = reader.part().ok()? {
+        let Part::Open(element) = part else { continue };
+        if matches!(element.name, "Declaration" | "ST")
+            && let [one] = reader.content("").ok()?.as_slice()
+            && reader.is_cdata(&one.place)
+        {
+            texts.push(one.place.clone());
+        }
+    }
+    Some(texts)
 }
 
 fn units<'t>(file: &'t str, reader: &mut Reader<'t>, out: &mut Assembly) -> Result<(), Broken> {

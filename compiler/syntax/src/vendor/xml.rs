@@ -154,6 +154,11 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// Whether a text is the content of a CDATA section.
+    pub fn is_cdata(&self, place: &Range<usize>) -> bool {
+        self.text[..place.start].ends_with("<![CDATA[") && self.text[place.end..].starts_with("]]>")
+    }
+
     fn open(&mut self, tag: &BytesStart<'t>, place: Range<usize>) -> Result<Part<'t>, Broken> {
         self.open.push(place.clone());
         if self.open.len() > DEEPEST {
