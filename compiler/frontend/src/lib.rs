@@ -179,9 +179,10 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
     let unassigned = lints::result::unassigned(&declarations);
     lints::hides::report(&mut declarations);
     lints::checks::report(&mut declarations);
+    let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
+    lints::siblings::note(&mut declarations);
     lints::otherwise::report(&mut declarations);
     lints::unused::report(&mut declarations);
-    let routines: Vec<_> = checked.routines.iter().map(|it| it.as_ref().map(|it| &it.0)).collect();
     stubs.report_called(&mut declarations, &routines, keep == Bodies::Kept);
     if keep == Bodies::Kept {
         declarations.report_not_there(&routines);

@@ -82,10 +82,12 @@ pub enum Part {
     NoTask,
     /// A comparison of two texts that are literals.
     ComparedLiterals,
+    /// A product or a quotient of a TIME and a REAL.
+    TimeByReal,
 }
 
 impl Part {
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 30] = [
         Self::Enable,
         Self::Temp,
         Self::LimitOfType,
@@ -115,6 +117,7 @@ impl Part {
         Self::PositionsOfBlock,
         Self::NoTask,
         Self::ComparedLiterals,
+        Self::TimeByReal,
     ];
 
     /// In words, for tables and messages.
@@ -140,7 +143,7 @@ impl Part {
             Self::NamedText => "a STRING of a length in a TYPE or an array",
             Self::FunctionOutput => "VAR_OUTPUT of a FUNCTION or METHOD",
             Self::FunctionDefault => "an initial value of an input of a FUNCTION",
-            Self::EvaluationOrder => "an operand that another operand changes",
+            Self::EvaluationOrder => "an operand or argument that another one changes",
             Self::InOutCopied => "a VAR_IN_OUT for what is global or given twice",
             Self::InOutOfFunctionCopied => "a VAR_IN_OUT of a FUNCTION for what is global or given twice",
             Self::InputReadInCall => "an input that another argument of its call reads",
@@ -149,6 +152,7 @@ impl Part {
             Self::PositionsOfBlock => "a call of a FUNCTION_BLOCK with a VAR_IN_OUT by position",
             Self::NoTask => "a PROGRAM without a TASK, where another has one",
             Self::ComparedLiterals => "a comparison of two texts that are literals",
+            Self::TimeByReal => "a TIME multiplied with a REAL, or divided by one",
         }
     }
 }

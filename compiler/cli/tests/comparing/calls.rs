@@ -10,6 +10,9 @@ VAR_OUTPUT o, p : INT; END_VAR
 METHOD PUBLIC Read : INT
 Read := a + p;
 END_METHOD
+METHOD PUBLIC Next : INT
+p := (p + 1) MOD 8; Next := p;
+END_METHOD
 o := a + b; p := a;
 END_FUNCTION_BLOCK
 FUNCTION_BLOCK Inout
@@ -48,6 +51,7 @@ END_PROGRAM
 #[test]
 fn what_a_call_is_on_openplc_is_not_equal() {
     let one_by_one = "inputs are assigned one by one";
+    let right_first = "the right side is evaluated first";
     let asked = [
         ("read", "openplc", "x(a := n, b := x.a); q := x.o;", one_by_one),
         ("read", "openplc4", "x(a := n, b := x.a); q := x.o;", one_by_one),
@@ -60,6 +64,23 @@ fn what_a_call_is_on_openplc_is_not_equal() {
             "openplc4",
             "i := 1; x(a := n, p => i, o => t[i MOD 10]); q := t[1];",
             "it is looked up after the call",
+        ),
+        (
+            "target",
+            "openplc",
+            "i := 1; x(a := n, p => i, o => t[i MOD 10]); q := t[1];",
+            "it is looked up after the call",
+        ),
+        ("operands", "openplc4", "q := x.Next() - 2 * x.Next();", right_first),
+        ("compared", "openplc4", "IF x.Next() > x.Next() THEN q := n; END_IF;", right_first),
+        ("arguments", "openplc4", "q := y.M(x.Next(), x.Next());", right_first),
+        ("chosen", "openplc4", "q := MAX(x.Next(), 7 - x.Next());", right_first),
+        ("index", "openplc4", "t[x.Next()] := x.Next(); q := t[1];", right_first),
+        (
+            "time",
+            "openplc4",
+            "d(IN := on, PT := T#1s); IF d.ET / 3.0 * 3.0 = d.ET THEN q := n; END_IF;",
+            "it is a double",
         ),
         ("named", "openplc4", "i := n; y(a := 1, v := i); q := y.M(d := 1, c := n);", "the names are passed over"),
         ("left_out", "openplc4", "i := n; y(a := 1, v := i); q := y.M(d := 1);", "the names are passed over"),
@@ -77,6 +98,10 @@ fn what_a_call_is_on_openplc_is_not_equal() {
     let same = [
         ("openplc", "x(a := n, b := x.p); q := x.o;"),
         ("openplc4", "x(a := n, b := n); q := x.p;"),
+        ("openplc4", "q := x.Read() - 2 * x.Read();"),
+        ("openplc4", "q := x.Next() - 2 * n;"),
+        ("openplc4", "x(a := x.Next(), b := x.Next()); q := x.o;"),
+        ("openplc4", "d(IN := on, PT := T#1s); IF d.ET * 3 = T#30ms THEN q := n; END_IF;"),
         ("openplc4", "c(CU := on, R := c.Q, PV := 2); q := n;"),
         ("openplc4", "i := n; x(a := i, o => t[i], p => j); q := t[1];"),
         ("openplc4", "i := n; y(a := 1, v := i); q := y.M(c := 1, d := n);"),

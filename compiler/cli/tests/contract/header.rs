@@ -8,7 +8,7 @@ TYPE
     Color : (Red, Green := 5, Blue) BYTE;
     state : STRUCT of_plant : INT; END_STRUCT
     Tasks : (Count, Rest);
-    Rec : STRUCT own : state; work : Tasks; a : INT; b : ARRAY[0..2, 1..2] OF REAL; s : STRING[10]; int, INT16_MAX : INT; END_STRUCT
+    Rec : STRUCT own : state; work : Tasks; a : INT; b : ARRAY[0..2, 1..2] OF REAL; s : STRING[10]; int, INT16_MAX : INT; thread_local, co_await, char8_t, static_assert, errno, EOF : SINT; END_STRUCT
 END_TYPE
 FUNCTION_BLOCK Nothing
 ;

@@ -17,6 +17,7 @@ mod wide_step;
 
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
+use crate::lints::siblings;
 use crate::types::declarations::Declarations;
 use crate::{Bodies, Code, Span, ast};
 use staunch_ir::reference::escape::moves_references;
@@ -74,6 +75,9 @@ impl Checked {
     fn check<'s>(&mut self, decl: &mut Declarations<'s>, slot: usize, body: &[ast::Statement<'s>], keep: Bodies) {
         let mut made = check_body(decl, slot, body, &mut self.left_out);
         let stack = made.as_ref().map_or(0, |(routine, _)| stack::of_body(routine, &|ty| decl.size_at_most(ty)));
+        if let Some((routine, _)) = &made {
+            siblings::keep(decl, slot, routine);
+        }
         if keep == Bodies::Dropped {
             made.iter_mut()
                 .for_each(|(routine, _)| routine.body = rest(&decl.program, std::mem::take(&mut routine.body)));
@@ -91,6 +95,7 @@ impl Checked {
     ) {
         if let Some(routine) = decl.pous[slot].dispatch.as_deref().cloned() {
             let stack = stack::of_body(&routine, &|ty| decl.size_at_most(ty));
+            siblings::keep(decl, slot, &routine);
             return self.push(Some((routine, Uses::default())), stack);
         }
         let reported = decl.log.diagnostics.len();

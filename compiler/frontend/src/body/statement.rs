@@ -53,6 +53,7 @@ impl<'s> Checker<'_, 's> {
         if !matches!(statement.kind, Ast_::Empty | Ast_::Label(_) | Ast_::Error) {
             self.count_statement(span);
         }
+        self.statement_from = self.is_reordered.then_some(self.block.len());
         let made = match &statement.kind {
             Ast_::Assign { target, value } => self.assignment(target, value, span),
             Ast_::AssignAll { targets, value } => self.assign_all(targets, value, span),

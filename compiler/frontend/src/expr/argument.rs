@@ -141,10 +141,20 @@ pub(crate) fn as_written(given: &[Given<'_, '_>]) -> Vec<usize> {
 impl<'s> Checker<'_, 's> {
     /// Evaluates the next part, a value of this type.
     pub(crate) fn value_part(&mut self, parts: &mut Parts, expr: &ast::Expr<'s>, ty: Type, role: Role) -> Option<()> {
+        // C++ orders the arguments of its functions as it likes; inputs are stored one after the other.
+        let is_unordered = self.statement_from.is_some() && matches!(role, Role::Passed(_));
+        let before = if is_unordered { parts.written.clone() } else { Vec::new() };
+        let mark = self.block.len();
         let value = self.after_parts(&mut parts.written, |this| match this.any_value(expr, ty) {
             Some(any) => any,
             None => this.given_value(expr, ty),
         })?;
+        if is_unordered {
+            self.note_siblings(mark);
+            if before.iter().any(|it| self.held_changes(&self.block[mark..], &it.held)) {
+                self.note_use(staunch_ir::Use::Part(staunch_ir::Part::EvaluationOrder), expr.span);
+            }
+        }
         parts.push(Held::Value(value), role, expr.span);
         Some(())
     }

@@ -181,9 +181,9 @@ fn is_of_unknown(call: &ast::Expr<'_>) -> bool {
         ast::ArgumentKind::Positional(value) | ast::ArgumentKind::Input(_, value) => value,
         ast::ArgumentKind::Output { .. } => call,
     });
-    let combines = |it: &ast::Expr<'_>| match &it.kind {
+    let combines = |it: &ast::Expr<'_>| match &it.bare().kind {
         ast::ExprKind::Binary(_, op, _) => matches!(op, BinaryOp::And | BinaryOp::Or | BinaryOp::Xor),
-        ast::ExprKind::Call(..) => is_chosen(it) || is_of_unknown(it),
+        ast::ExprKind::Call(..) => is_chosen(it.bare()) || is_of_unknown(it.bare()),
         _ => is_number(it),
     };
     is_one && first.is_some_and(combines)

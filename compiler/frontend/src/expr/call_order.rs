@@ -5,10 +5,13 @@ use super::binding::Parameter;
 use super::checker::Checker;
 use super::order::Held;
 use crate::dialect::rules::is_followed;
+use crate::lints::siblings::Siblings;
 use crate::types::signature::pin_place;
 use crate::{Span, ast};
 use ast::ArgumentKind;
-use staunch_ir::{Argument, Expr, Location, Part, Place, Section, Statement, StatementKind, Type, Use};
+use staunch_ir::{
+    Argument, Expr, Location, Part, Place, RoutineId, Section, Statement, StatementKind, Type, Use, visit,
+};
 
 impl<'s> Checker<'_, 's> {
     /// An input that another argument reads, and a target that is another one after the call. `call` is its statements.
@@ -39,6 +42,20 @@ impl<'s> Checker<'_, 's> {
                 self.note_use(Use::Part(found), part.span);
             }
         }
+    }
+
+    /// Calls of an operand, which its statements from `mark` on have, beside those of the operands before it.
+    pub(crate) fn note_siblings(&mut self, mark: usize) {
+        let Some(from) = self.statement_from.filter(|it| *it < mark) else { return };
+        let (first, second) = (Calls::of(&self.block[from..mark]), Calls::of(&self.block[mark..]));
+        let Some(at) = second.at.filter(|_| !first.callees.is_empty()) else { return };
+        let share = first.given.iter().any(|it| self.changed_by(&self.block[mark..], it))
+            || second.given.iter().any(|it| self.changed_by(&self.block[from..mark], it));
+        self.decl.siblings.push(Siblings { first: first.callees, second: second.callees, share, at });
+    }
+
+    fn changed_by(&self, block: &[Statement], place: &Place) -> bool {
+        self.held_changes(block, &Held::Value(loaded(place)))
     }
 
     /// Calls in arguments and targets that get the instance: what they read of it may be what the call stores.
@@ -107,6 +124,32 @@ impl<'s> Checker<'_, 's> {
         if parameters.iter().any(|it| it.section == Section::InOut) && arguments.iter().any(is_positional) {
             self.note_use(Use::Part(Part::PositionsOfBlock), callee);
         }
+    }
+}
+
+/// The calls among statements.
+#[derive(Default)]
+struct Calls {
+    callees: Vec<RoutineId>,
+    /// The instances and variables that they are given.
+    given: Vec<Place>,
+    at: Option<Location>,
+}
+
+impl Calls {
+    fn of(block: &[Statement]) -> Self {
+        let mut calls = Self::default();
+        visit::statements(block, &mut |statement| {
+            let StatementKind::Call { callee, instance, arguments, .. } = &statement.kind else { return };
+            calls.callees.push(*callee);
+            calls.at = calls.at.or(Some(statement.at));
+            let passed = arguments.iter().filter_map(|it| match it {
+                Argument::Reference(place) => Some(place),
+                Argument::Value(_) => None,
+            });
+            calls.given.extend(instance.iter().chain(passed).cloned());
+        });
+        calls
     }
 }
 

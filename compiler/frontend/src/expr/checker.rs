@@ -3,6 +3,7 @@
 use super::call_tracking::Called;
 use super::late_target::LateTarget;
 use super::uses::Uses;
+use crate::dialect::rules::is_followed;
 use crate::spelling::Key;
 use crate::testing::suite::WANTED;
 use crate::types::counter::Counter;
@@ -13,7 +14,7 @@ use crate::types::scope::Scope;
 use crate::types::signature::Signature;
 use crate::{Code, Diagnostic, Span, ast};
 use rustc_hash::{FxHashMap, FxHashSet};
-use staunch_ir::{Block, Elementary, Expr, Local, Location, Place, Statement, StatementKind, Type};
+use staunch_ir::{Block, Elementary, Expr, Local, Location, Part, Place, Statement, StatementKind, Type};
 use std::rc::Rc;
 
 /// The result for a call of overloaded FUNCTIONs: it is computed once, however often the call is checked.
@@ -31,6 +32,10 @@ pub(crate) struct Checker<'d, 's> {
     pub instance: Option<usize>,
     /// The statements made so far for the innermost list; hoisted calls go to its end.
     pub block: Block,
+    /// The dialect's system does the calls of an expression in another order.
+    pub is_reordered: bool,
+    /// Where in the block the statement began, if it is.
+    pub statement_from: Option<usize>,
     pub locals: Vec<Local>,
     /// The FOR loops around the statement.
     pub counters: Vec<Counter>,
@@ -79,6 +84,8 @@ impl<'d, 's> Checker<'d, 's> {
     pub fn of_body(decl: &'d mut Declarations<'s>, slot: usize, signature: &Rc<Signature<'s>>) -> Self {
         let mut checker = Self::new(decl, &signature.scope, Context::Body);
         checker.slot = Some(slot);
+        let dialect = checker.decl.dialect(checker.decl.pous[slot].ast.name.span);
+        checker.is_reordered = !is_followed(dialect, Part::EvaluationOrder);
         checker.locals.clone_from(&signature.locals);
         checker.signature = Some(Rc::clone(signature));
         checker
@@ -92,6 +99,8 @@ impl<'d, 's> Checker<'d, 's> {
             signature: None,
             instance: None,
             block: Vec::new(),
+            is_reordered: false,
+            statement_from: None,
             locals: Vec::new(),
             counters: Vec::new(),
             loops: 0,
@@ -171,8 +180,11 @@ impl<'d, 's> Checker<'d, 's> {
     /// The statements that `make` adds, as a list of their own.
     pub fn nested(&mut self, make: impl FnOnce(&mut Self)) -> Block {
         let outer = std::mem::take(&mut self.block);
+        let from = self.statement_from.replace(0);
+        self.statement_from = from.and(self.statement_from);
         make(self);
         let mut made = std::mem::replace(&mut self.block, outer);
+        self.statement_from = from;
         // Most blocks are small, and live as long as the program.
         made.shrink_to_fit();
         made

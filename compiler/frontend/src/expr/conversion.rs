@@ -56,10 +56,16 @@ impl<'s> Checker<'_, 's> {
     fn value_converted(&mut self, value: &ast::Expr<'s>, from: Elementary) -> Option<Expr> {
         let is_computed = matches!(value.bare().kind, ast::ExprKind::Binary(..) | ast::ExprKind::Unary(..));
         let ty = Type::Elementary(from);
-        if is_computed && from.is_integer() && self.decl.dialect(value.span).rules().keeps_one_type() {
-            // STruC++ has one template for all of these, which takes what was computed at 32 bits as it is.
+        if self.has_functions_of_strucpp(value.span) {
+            // All of STruC++'s are templates, which take a number at the type that it was computed at, whatever their names say.
+            let is_number =
+                |it: Elementary| it != Elementary::Bool && (it.is_real() || it.is_integer() || it.is_bits());
             return match self.operand(value, Some(ty))? {
-                Operand::Promoted(value, own) if own == from => Some(value),
+                Operand::Typed(given) | Operand::Promoted(given, _)
+                    if is_number(from) && given.ty.elementary().is_some_and(is_number) =>
+                {
+                    Some(given)
+                }
                 other => self.coerce(other, ty, value.span),
             };
         }

@@ -80,6 +80,9 @@ impl Checker<'_, '_> {
         if self.decl.dialect(sides.span).rules().time_is_seconds() {
             return self.scale_seconds(sides);
         }
+        if !by_integer {
+            self.note_use(Use::Part(Part::TimeByReal), sides.op_span);
+        }
         if by_integer { self.scale_by_integer(sides) } else { self.scale_by_real(sides) }
     }
 

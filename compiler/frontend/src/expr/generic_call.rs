@@ -58,9 +58,11 @@ impl<'s> Checker<'_, 's> {
         }
         let side = open.iter().rev().filter(|it| it.word == word).find_map(|it| beside(it.operand.as_ref()?, None));
         let hint = self.expected_of(word, called).or(side);
+        let mark = self.block.len();
         let operand = self.after_parts(&mut parts.written, |this| {
             this.taken(Takes::Common(hint), expr, formal.name.text, called.name)
         })?;
+        self.note_siblings(mark);
         let location = self.at(expr.span);
         // A number that has no type yet is one that nothing changes.
         let value = operand.typed().cloned().unwrap_or_else(|| staunch_ir::Expr::bool(false, location));

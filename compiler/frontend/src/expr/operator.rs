@@ -49,7 +49,9 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let right_hint = beside(&a, hint).or_else(|| self.bits_of_side(a.ty(), right, op));
+        let mark = self.block.len();
         let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, right_hint))?;
+        self.note_siblings(mark);
         // A bare enumerator on the left listens to the right side.
         if let (Some(Type::Enum(x)), Some(Type::Enum(y))) = (a.ty(), b.ty())
             && x != y

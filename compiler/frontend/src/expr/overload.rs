@@ -218,10 +218,12 @@ impl<'s> Checker<'_, 's> {
             let mut done: Vec<_> = written.iter_mut().filter_map(Operand::typed_mut).collect();
             // All operands are checked before giving up, so that one run reports every mistake.
             let next = values[*at].span;
+            let mark = self.block.len();
             let evaluated = self.after(&mut done, |this| {
                 this.late_target_if(|it| it.is_before(next))?;
                 evaluate(this, *at, side)
             });
+            self.note_siblings(mark);
             match evaluated {
                 Some(operand) => written.push(operand),
                 None => complete = false,

@@ -4,4 +4,5 @@ pub(crate) mod checks;
 pub(crate) mod hides;
 pub(crate) mod otherwise;
 pub(crate) mod result;
+pub(crate) mod siblings;
 pub(crate) mod unused;

@@ -13,6 +13,7 @@ use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
 use crate::dialect::{self, Dialect, missing};
+use crate::lints::siblings::{Bodies, Siblings};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::{Key, nearest};
@@ -172,6 +173,10 @@ pub(crate) struct Declarations<'s> {
     pub externals: FxHashMap<String, Span>,
     /// By their slots.
     pub named_programs: BTreeMap<usize, NamedProgram<'s>>,
+    /// Calls within one expression, where the dialect's system may do them in another order.
+    pub siblings: Vec<Siblings>,
+    /// What the bodies touch that may have or be such calls.
+    pub touched: Bodies,
     /// The CONSTANTs of POUs, by their slots, which others read by a POU's name.
     pub constants: FxHashMap<usize, Rc<Scope<'s>>>,
     pub tests: Tests,
@@ -212,6 +217,8 @@ impl<'s> Declarations<'s> {
             synthetic: Synthetic::default(),
             externals: FxHashMap::default(),
             named_programs: BTreeMap::new(),
+            siblings: Vec::new(),
+            touched: Bodies::default(),
             constants: FxHashMap::default(),
             tests: Tests::default(),
             coverage: None,

@@ -263,6 +263,8 @@ impl Choice for DateAsNumber {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RealOfText {
     WithExponent,
+    /// As C reads it, where it has a point.
+    AfterPoint,
     FixedPoint,
 }
 
@@ -272,6 +274,9 @@ impl Choice for RealOfText {
     fn words(self) -> &'static str {
         match self {
             Self::WithExponent => "with an exponent; a comma ends it",
+            Self::AfterPoint => {
+                "with an exponent, where it has a point; else an integer, in which commas are passed over"
+            }
             Self::FixedPoint => "without an exponent; commas are passed over",
         }
     }

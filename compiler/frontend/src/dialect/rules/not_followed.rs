@@ -183,7 +183,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     ),
     of_strucpp(
         Use::Part(Part::EvaluationOrder),
-        "the right side is evaluated first: after `z := 5`, `z + Change(z)` adds what Change has made of `z`",
+        "the right side is evaluated first, and the last argument: after `z := 5`, `z + Change(z)` adds what Change has made of `z`",
     )
     .told(),
     of_strucpp(Use::Part(Part::InOutCopied), COPIED),
@@ -196,6 +196,15 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`",
     )
     .told(),
+    of_matiec(
+        Use::Part(Part::TargetChanged),
+        "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`",
+    )
+    .told(),
+    of_strucpp(
+        Use::Part(Part::TimeByReal),
+        "in an expression it is a double until it is stored: with `t` of 10 ms, `t / 3.0 * 3.0 = t` is TRUE",
+    ),
     of_strucpp(Use::Part(Part::NamedOrder), "the names are passed over: the first argument goes to the first input").told(),
     of_strucpp(Use::Part(Part::PositionsOfBlock), "only inputs are counted, so that arguments go to others").told(),
     of_strucpp(Use::Part(Part::NoTask), "it runs in the first TASK").told(),

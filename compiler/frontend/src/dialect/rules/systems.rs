@@ -118,6 +118,7 @@ pub(super) const OPENPLC: Rules = Rules {
     limit_crossed: follows(LimitCrossed::Minimum, MATIEC),
     default_string: follows(DefaultString::Holds126, MATIEC),
     functions: follows(Functions::OfMatiec, MATIEC),
+    real_of_text: follows(RealOfText::AfterPoint, MATIEC),
     text_positions: follows(TextPositions::OfLibrary, MATIEC),
     program_order: follows(ProgramOrder::OfText, MATIEC),
     literals: follows(Literals::OfC, MATIEC),
