@@ -100,7 +100,6 @@ fn what_a_call_is_on_openplc_is_not_equal() {
         ("openplc4", "x(a := n, b := n); q := x.p;"),
         ("openplc4", "q := x.Read() - 2 * x.Read();"),
         ("openplc4", "q := x.Next() - 2 * n;"),
-        ("openplc4", "x(a := x.Next(), b := x.Next()); q := x.o;"),
         ("openplc4", "d(IN := on, PT := T#1s); IF d.ET * 3 = T#30ms THEN q := n; END_IF;"),
         ("openplc4", "c(CU := on, R := c.Q, PV := 2); q := n;"),
         ("openplc4", "i := n; x(a := i, o => t[i], p => j); q := t[1];"),
