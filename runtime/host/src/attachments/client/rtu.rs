@@ -89,7 +89,7 @@ impl<P: Port> Rtu<P> {
         request: &[u8],
         answer: &mut Vec<u8>,
     ) -> Result<(), Trouble> {
-        self.settle(self.silence, Instant::now() + timeout)?;
+        self.settle(self.last + self.silence, self.silence, Instant::now() + timeout)?;
         self.frame.clear();
         self.frame.push(unit);
         self.frame.extend(request);
@@ -104,8 +104,8 @@ impl<P: Port> Rtu<P> {
             Ok(it) => it,
             Err(Trouble::Closed) => return Err(Trouble::Closed),
             Err(trouble) => {
-                // What is left of a frame does not become the beginning of the next one.
-                self.settle(PAUSE, Instant::now() + timeout)?;
+                // The answer may still come: the next request is made when its time is over, so that it is not taken for that one's.
+                self.settle(deadline.max(self.last + PAUSE), PAUSE, deadline + timeout)?;
                 return Err(trouble);
             }
         };
@@ -113,10 +113,10 @@ impl<P: Port> Rtu<P> {
         Ok(())
     }
 
-    /// Drops what comes until the line has been silent for so long.
-    fn settle(&mut self, silence: Duration, limit: Instant) -> Result<(), Trouble> {
+    /// Drops what comes until then, and longer, until the line has been silent.
+    fn settle(&mut self, until: Instant, silence: Duration, limit: Instant) -> Result<(), Trouble> {
         let mut dropped = [0; MOST];
-        while self.port.receive(&mut dropped, self.last + silence).map_err(gone)? > 0 {
+        while self.port.receive(&mut dropped, until.max(self.last + silence)).map_err(gone)? > 0 {
             self.last = Instant::now();
             if self.last > limit {
                 return Err(unanswered("the line is never silent"));

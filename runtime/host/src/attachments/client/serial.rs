@@ -10,6 +10,7 @@ use std::fs::File;
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::os::fd::AsRawFd as _;
 use std::os::unix::fs::OpenOptionsExt as _;
+use std::thread;
 use std::time::Instant;
 
 /// The terminal of the process stays what it is.
@@ -109,11 +110,16 @@ impl Serial {
     /// Waits until the port can be read or written, or then. A port that has gone can be: the call then has its error.
     fn wait(&self, events: c_short, until: Instant) -> io::Result<bool> {
         let left = until.saturating_duration_since(Instant::now());
-        let milliseconds = left.as_micros().div_ceil(1000).try_into().unwrap_or(c_int::MAX);
+        let milliseconds = left.as_millis().try_into().unwrap_or(c_int::MAX);
         let mut awaited = Awaited { descriptor: self.0.as_raw_fd(), events, found: 0 };
         // SAFETY: one structure, as the count says, which lives until the call is over.
         match unsafe { poll(&raw mut awaited, 1, milliseconds) } {
-            0 => Ok(false),
+            0 if left.is_zero() => Ok(false),
+            0 => {
+                // Between frames, a millisecond is long: the rest of one is slept.
+                thread::sleep(until.saturating_duration_since(Instant::now()));
+                self.wait(events, until)
+            }
             1 => Ok(true),
             _ => match io::Error::last_os_error() {
                 error if error.kind() == ErrorKind::Interrupted => Ok(true),

@@ -133,6 +133,15 @@ fn what_comes_before_a_request_is_dropped() {
     assert_eq!(read(&mut rtu, &[&whole()]).unwrap(), ANSWER);
 }
 
+/// Where noise comes before an answer, the answer is not taken for that of the next request.
+#[test]
+fn an_answer_after_noise_is_dropped() {
+    let mut rtu = rtu();
+    is_damaged(read(&mut rtu, &[&[1, 2, 3], &[], &framed(&[7, 3, 4, 9, 9, 9, 9])]), "no frame");
+    assert!(rtu.port.received.is_empty());
+    assert_eq!(read(&mut rtu, &[&whole()]).unwrap(), ANSWER);
+}
+
 #[test]
 fn a_line_that_is_never_silent_is_no_endless_wait() {
     struct Noise;
