@@ -6,8 +6,11 @@
 mod layout;
 mod link;
 mod plan;
+mod port;
 mod rtu;
+mod shared;
 mod tcp;
+mod trouble;
 mod wire;
 mod worker;
 
@@ -18,7 +21,6 @@ mod serial;
 mod serial;
 
 use super::attachment::{Attachment, Ended};
-use super::exchange::Exchange;
 use super::options::AtEnd;
 use super::points::{Point, Points};
 use crate::map::Map;
@@ -27,15 +29,14 @@ use crate::{Error, Machine};
 pub use layout::openplc_layout;
 use plan::Plan;
 pub use plan::{Mistake, check_remotes};
-use std::sync::atomic::{AtomicBool, Ordering};
+use shared::{Account, Shared};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, channel};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 use worker::{Station, Worker};
 
-/// How often a thread that waits looks whether the run is over.
-const NAP: Duration = Duration::from_millis(50);
 /// Bytes of the thread, which a run with a priority has locked.
 const STACK: usize = 128 << 10;
 
@@ -54,26 +55,8 @@ pub(super) struct Client {
     quiet: bool,
 }
 
-#[derive(Debug)]
-struct Shared {
-    exchange: Exchange,
-    is_over: AtomicBool,
-    /// The server does not answer, and that ends the run.
-    is_fatal: AtomicBool,
-    account: Mutex<Account>,
-}
-
-/// What became of the requests.
-#[derive(Clone, Debug, Default)]
-struct Account {
-    answered: u64,
-    failed: u64,
-    /// Why the last one was not answered.
-    trouble: String,
-}
-
 impl Client {
-    /// The clients of a program's servers, in their order.
+    /// The clients of all servers of a program.
     pub fn start_all(map: &Map, points: &Points, at_end: AtEnd, quiet: bool) -> Result<Vec<Self>, Error> {
         let mut clients = Vec::new();
         for (at, remote) in map.remotes.iter().enumerate() {
@@ -99,12 +82,7 @@ impl Client {
         for remote in remotes {
             let plan =
                 Plan::of(remote, map, points).map_err(|it| Error::Usage(format!("{}: {}", remote.label(), it.text)))?;
-            let shared = Arc::new(Shared {
-                exchange: Exchange::new(plan.points.len()),
-                is_over: AtomicBool::new(false),
-                is_fatal: AtomicBool::new(false),
-                account: Mutex::new(Account::default()),
-            });
+            let shared = Arc::new(Shared::new(plan.points.len()));
             let (points, label, (end, ended)) = (plan.points.clone(), remote.label(), channel());
             stations.push(Station::new(remote.clone(), plan, Arc::clone(&shared), end));
             clients.push(Self { points, shared, at_end, turn: 0, ended, patience: Duration::ZERO, label, quiet });
@@ -159,15 +137,5 @@ impl Attachment for Client {
             let Account { answered, failed, .. } = self.shared.account().clone();
             crate::error::tell(format_args!("note: {}: {answered} requests answered, {failed} not", self.label));
         }
-    }
-}
-
-impl Shared {
-    fn account(&self) -> std::sync::MutexGuard<'_, Account> {
-        self.account.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn is_over(&self) -> bool {
-        self.is_over.load(Ordering::Acquire)
     }
 }

@@ -3,7 +3,7 @@
 use super::rtu::Rtu;
 use super::serial::Serial;
 use super::tcp::Tcp;
-use super::wire::Trouble;
+use super::trouble::Trouble;
 use crate::remote::Server;
 use std::time::Duration;
 

@@ -1,6 +1,6 @@
 //! Systems other than Linux: no serial port can be opened.
 
-use super::rtu::Port;
+use super::port::Port;
 use crate::remote::Line;
 use std::io;
 use std::time::Instant;

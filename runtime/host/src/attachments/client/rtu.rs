@@ -4,7 +4,8 @@
 //! No number connects an answer with its request. So what comes before a request is sent is dropped, the line is silent then, and an
 //! answer counts only if its unit, function, length and CRC are those that are expected; one to a write repeats what was written, too.
 
-use super::wire::Trouble;
+use super::port::Port;
+use super::trouble::Trouble;
 use crate::attachments::pdu::function;
 use crate::remote::{Line, Parity};
 use std::io;
@@ -19,13 +20,6 @@ const LEAST: usize = 4;
 const PAUSE: Duration = Duration::from_millis(50);
 /// Above 19200 bits a second, the specification has this silence between frames, and not that of 3.5 characters (2.5.1.1).
 const LEAST_SILENCE: Duration = Duration::from_micros(1750);
-
-/// A serial line as bytes.
-pub(super) trait Port {
-    fn send(&mut self, bytes: &[u8], until: Instant) -> io::Result<()>;
-    /// Some bytes, as soon as there are any; 0 if there are none until then. What has come before is returned at once.
-    fn receive(&mut self, buffer: &mut [u8], until: Instant) -> io::Result<usize>;
-}
 
 #[derive(Debug)]
 pub(super) struct Rtu<P> {

@@ -3,7 +3,7 @@
 //! The functions are declared here, and not taken from a crate: the command compiles this one with rustc alone. The kernel's own
 //! structure (`termios2`) has any rate as a number; that of the C library has only some.
 
-use super::rtu::Port;
+use super::port::Port;
 use crate::remote::{Line, Parity};
 use core::ffi::{c_int, c_short, c_ulong};
 use std::fs::File;

@@ -1,6 +1,6 @@
 //! Frames of "MODBUS Messaging on TCP/IP Implementation Guide V1.0b".
 
-use super::wire::Trouble;
+use super::trouble::Trouble;
 use std::io::{self, Read as _, Write as _};
 use std::net::{TcpStream, ToSocketAddrs as _};
 use std::time::{Duration, Instant};

@@ -1,8 +1,9 @@
 //! The thread that makes the requests: of one server of Modbus TCP, or of all units of a serial line, in turn.
 
 use super::plan::Plan;
-use super::wire::{Trouble, Wire};
-use super::{NAP, Shared};
+use super::shared::{NAP, Shared};
+use super::trouble::Trouble;
+use super::wire::Wire;
 use crate::remote::{OnLoss, Remote, Server};
 use std::fmt::Display;
 use std::sync::Arc;
