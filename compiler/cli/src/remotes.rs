@@ -2,10 +2,12 @@
 //! variables, and given to its map.
 
 use staunch_build::{Modbus, Project};
-use staunch_host::{Map, OnLoss, Remote, WordOrder, check_remotes, is_address_and_port, parse_duration};
+use staunch_host::{Map, Mistake, OnLoss, Remote, WordOrder, check_remotes, openplc_layout, parse_duration};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::time::Duration;
+
+mod server;
 
 /// How often a server is asked where the project does not say, and how long an answer may take.
 const PERIOD: Duration = Duration::from_millis(100);
@@ -16,43 +18,68 @@ pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
     if project.modbus.is_empty() {
         return Ok(());
     }
-    let read = |(number, it)| remote(it).map_err(|(key, text)| (number, key, text));
     let place =
         |(number, key, text): (usize, String, String)| format!("{}: {text}", project.place_in_modbus(number, &key));
-    let remotes: Vec<Remote> = project.modbus.iter().enumerate().map(read).collect::<Result<_, _>>().map_err(place)?;
+    let read = |(number, it)| remote(it).map_err(|(key, text)| (number, key, text));
+    let mut remotes: Vec<Remote> =
+        project.modbus.iter().enumerate().map(read).collect::<Result<_, _>>().map_err(place)?;
+    server::check_lines(&remotes).map_err(|(number, text)| place((number, "port".to_owned(), text)))?;
     let map = staunch_ir::symbols::map_text(program, &Layout::new(program));
     let map = Map::parse(&map).map_err(|it| it.to_string())?;
-    check_remotes(&remotes, &map).map_err(|(number, mistake)| match mistake.variable {
-        Some(name) => place((number, name.clone(), format!("`{name}`: {}", mistake.text))),
-        None => place((number, "server".to_owned(), mistake.text)),
-    })?;
+    lay_out(project, &map, &mut remotes).map_err(place)?;
+    check_remotes(&remotes, &map)
+        .map_err(|(number, mistake)| place(mistaken(number, &project.modbus[number], mistake)))?;
     program.remotes = remotes.iter().flat_map(Remote::lines).collect();
     Ok(())
+}
+
+/// Adds what a layout says to the entries of the servers that have one.
+fn lay_out(project: &Project, map: &Map, remotes: &mut [Remote]) -> Result<(), (usize, String, String)> {
+    let laid_out = openplc_layout(map, remotes);
+    for (number, remote) in remotes.iter_mut().enumerate() {
+        if project.modbus[number].layout.is_none() {
+            continue;
+        }
+        if laid_out.is_empty() && remote.variables.is_empty() {
+            let text = "no variable has a place there: a layout of OpenPLC has those at %IX, %IW, %QX and %QW";
+            return Err((number, "layout".to_owned(), text.to_owned()));
+        }
+        remote.variables.extend(laid_out.iter().cloned());
+    }
+    Ok(())
+}
+
+/// The setting that a mistake is in, and its text.
+fn mistaken(number: usize, modbus: &Modbus, mistake: Mistake) -> (usize, String, String) {
+    let server = || if modbus.port.is_some() { "port" } else { "server" }.to_owned();
+    match mistake.variable {
+        Some(name) => {
+            let is_own = modbus.map.iter().any(|it| it.0 == name);
+            let key = if is_own { name.clone() } else { "layout".to_owned() };
+            (number, key, format!("`{name}`: {}", mistake.text))
+        }
+        None => (number, server(), mistake.text),
+    }
 }
 
 /// An error is the setting that is wrong, and why.
 fn remote(modbus: &Modbus) -> Result<Remote, (String, String)> {
     let fail = |key: &str, text: String| (key.to_owned(), text);
-    let server = &modbus.server;
-    if !is_address_and_port(server) {
-        let text = format!("`{server}` is not an address and port: write, for example, server = \"192.168.0.20:502\"");
-        return Err(fail("server", text));
-    }
-    let unit = modbus.unit.unwrap_or(1);
-    let unit = u8::try_from(unit).map_err(|_| fail("unit", format!("`unit` is a number from 0 to 255, not {unit}")))?;
+    let server = server::of(modbus)?;
+    let unit = server::unit(modbus, &server)?;
     let time = |key: &str, written: &Option<String>, other: Duration| match written {
         Some(written) => parse_duration(written)
             .map_err(|it| fail(key, format!("`{key}`: {it}")))
             .map(|it| Duration::from_nanos(it.unsigned_abs())),
         None => Ok(other),
     };
-    let name = modbus.name.clone().unwrap_or_else(|| server.clone());
+    let name = modbus.name.as_ref().or(modbus.server.as_ref()).or(modbus.port.as_ref()).cloned().unwrap_or_default();
     if name.chars().any(char::is_control) {
         return Err(fail("name", "`name` is one line of text".to_owned()));
     }
     let remote = Remote {
         name,
-        server: server.clone(),
+        server,
         unit,
         period: time("period", &modbus.period, PERIOD)?,
         timeout: time("timeout", &modbus.timeout, TIMEOUT)?,
@@ -60,9 +87,9 @@ fn remote(modbus: &Modbus) -> Result<Remote, (String, String)> {
         word_order: named(&WordOrder::ALL, modbus.word_order.as_deref()),
         variables: modbus.map.clone(),
     };
-    if modbus.map.is_empty() {
+    if modbus.map.is_empty() && modbus.layout.is_none() {
         return Err(fail(
-            "server",
+            if modbus.port.is_some() { "port" } else { "server" },
             "no variable is read or written there: write `[modbus.map]`, and below it level = \"input-register 3\""
                 .to_owned(),
         ));

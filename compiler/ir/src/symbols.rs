@@ -33,7 +33,8 @@ pub const VERSION: u32 = 1;
 /// field      name  type  offset  section  flags  address  low..high
 /// path       field of the globals  its name in full, of one in a NAMESPACE or a list
 /// bound      type  offset in the machine  address of the input that it is copied from before each scan
-/// remote     name  address and port  unit  period in ns  timeout in ns  on-loss  word-order, or -; then its registers
+/// remote     name  address and port  unit  period in ns  timeout in ns  on-loss  word-order, or -; for a serial port, which is
+///            in the place of the address, then baud rate  parity  stop bits; then its registers
 /// register   variable  place at the server, `input-register 3`
 /// object     offset in the machine  size
 /// globals    struct:id  offset

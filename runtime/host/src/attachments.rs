@@ -24,7 +24,7 @@ mod mapping;
 mod mapping;
 
 pub(crate) use attachment::Ended;
-pub use client::{Mistake, check_remotes};
+pub use client::{Mistake, check_remotes, openplc_layout};
 pub use options::{AtEnd, Connection, Io, is_address_and_port};
 
 use crate::map::Map;
@@ -59,8 +59,8 @@ impl Attachments {
                 crate::error::tell(format_args!("note: {connection} has no place for {names}"));
             }
         }
-        for remote in &map.remotes {
-            all.push(Box::new(Client::start(remote, map, &points, io.at_end, quiet)?));
+        for client in Client::start_all(map, &points, io.at_end, quiet)? {
+            all.push(Box::new(client));
         }
         Ok(Self(all))
     }

@@ -49,7 +49,7 @@ mod allocations;
 mod fixture;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
-pub use attachments::{AtEnd, Connection, Io, Mistake, check_remotes, is_address_and_port};
+pub use attachments::{AtEnd, Connection, Io, Mistake, check_remotes, is_address_and_port, openplc_layout};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot};
 pub use csv::cells as csv_cells;
@@ -64,7 +64,7 @@ pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use minor::{minor_faults_json, minor_faults_note};
 pub use path::{Place, resolve as place_of};
 pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
-pub use remote::{OnLoss, Remote, WordOrder};
+pub use remote::{Line, OnLoss, Parity, Remote, Server, WordOrder};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};
 pub use run::{Moment, Options, Summary, run};
 pub use schedule::DEFAULT_CYCLE;

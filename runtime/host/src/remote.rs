@@ -2,13 +2,12 @@
 
 use std::time::Duration;
 
-/// A Modbus TCP server (a slave), and which of its coils and registers are which variables.
+/// A Modbus server (a slave), and which of its coils and registers are which variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Remote {
-    /// In messages; that may be the server's address.
+    /// In messages; that may be the server's address or port.
     pub name: String,
-    /// `192.168.0.20:502`
-    pub server: String,
+    pub server: Server,
     pub unit: u8,
     /// From one turn of requests to the next.
     pub period: Duration,
@@ -18,6 +17,34 @@ pub struct Remote {
     pub word_order: Option<WordOrder>,
     /// A variable or an address, and its place on the server: `input-register 3`.
     pub variables: Vec<(String, String)>,
+}
+
+/// How a server is reached.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Server {
+    /// Modbus TCP, at `192.168.0.20:502`.
+    Tcp(String),
+    /// Modbus RTU. Several units may share the line.
+    Serial(Line),
+}
+
+/// A serial line, of 8 data bits.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// `/dev/ttyUSB0`
+    pub port: String,
+    /// Bits a second.
+    pub baud_rate: u32,
+    pub parity: Parity,
+    /// 1 or 2.
+    pub stop_bits: u8,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parity {
+    None,
+    Even,
+    Odd,
 }
 
 /// What becomes of inputs whose server does not answer.
@@ -42,6 +69,28 @@ impl OnLoss {
     pub const ALL: [(&'static str, Self); 3] = [("hold", Self::Hold), ("safe", Self::Safe), ("fault", Self::Fault)];
 }
 
+impl Parity {
+    pub const ALL: [(&'static str, Self); 3] = [("none", Self::None), ("even", Self::Even), ("odd", Self::Odd)];
+}
+
+impl Server {
+    /// The address or port.
+    fn place(&self) -> &str {
+        match self {
+            Self::Tcp(address) => address,
+            Self::Serial(line) => &line.port,
+        }
+    }
+}
+
+impl Line {
+    /// What a message shows of it: `19200 baud, parity even, 1 stop bit`.
+    pub fn settings(&self) -> String {
+        let (parity, plural) = (word(&Parity::ALL, self.parity), if self.stop_bits == 1 { "" } else { "s" });
+        format!("{} baud, parity {parity}, {} stop bit{plural}", self.baud_rate, self.stop_bits)
+    }
+}
+
 impl WordOrder {
     pub const ALL: [(&'static str, Self); 2] = [("high-first", Self::HighFirst), ("low-first", Self::LowFirst)];
 }
@@ -57,9 +106,13 @@ fn named<T: Copy>(all: &[(&'static str, T)], word: &str) -> Option<T> {
 impl Remote {
     /// As messages name it.
     pub(crate) fn label(&self) -> String {
-        match self.name == self.server {
-            true => format!("modbus {}", self.server),
-            false => format!("modbus {} ({})", self.name, self.server),
+        let place = match &self.server {
+            Server::Tcp(address) => address.clone(),
+            Server::Serial(line) => format!("{} unit {}", line.port, self.unit),
+        };
+        match self.name == self.server.place() {
+            true => format!("modbus {place}"),
+            false => format!("modbus {} ({place})", self.name),
         }
     }
 
@@ -67,21 +120,33 @@ impl Remote {
     pub fn lines(&self) -> Vec<String> {
         let order = self.word_order.map_or("-", |it| word(&WordOrder::ALL, it));
         let (period, timeout) = (self.period.as_nanos(), self.timeout.as_nanos());
-        let loss = word(&OnLoss::ALL, self.on_loss);
-        let head =
-            format!("remote\t{}\t{}\t{}\t{period}\t{timeout}\t{loss}\t{order}", self.name, self.server, self.unit);
+        let (place, loss) = (self.server.place(), word(&OnLoss::ALL, self.on_loss));
+        let mut head = format!("remote\t{}\t{place}\t{}\t{period}\t{timeout}\t{loss}\t{order}", self.name, self.unit);
+        if let Server::Serial(line) = &self.server {
+            let parity = word(&Parity::ALL, line.parity);
+            head += &format!("\t{}\t{parity}\t{}", line.baud_rate, line.stop_bits);
+        }
         let variables = self.variables.iter().map(|(name, place)| format!("register\t{name}\t{place}"));
         std::iter::once(head).chain(variables).collect()
     }
 
     /// The first line of [`lines`](Self::lines), after its first word.
     pub(crate) fn parse<'t>(mut cells: impl Iterator<Item = &'t str>) -> Option<Self> {
-        let (name, server) = (cells.next()?.to_owned(), cells.next()?.to_owned());
+        let (name, place) = (cells.next()?.to_owned(), cells.next()?.to_owned());
         let unit = cells.next()?.parse().ok()?;
         let mut time = || Some(Duration::from_nanos(cells.next()?.parse().ok()?));
         let (period, timeout) = (time()?, time()?);
         let on_loss = named(&OnLoss::ALL, cells.next()?)?;
         let word_order = named(&WordOrder::ALL, cells.next()?);
+        let server = match cells.next() {
+            Some(baud_rate) => Server::Serial(Line {
+                port: place,
+                baud_rate: baud_rate.parse().ok()?,
+                parity: named(&Parity::ALL, cells.next()?)?,
+                stop_bits: cells.next()?.parse().ok()?,
+            }),
+            None => Server::Tcp(place),
+        };
         Some(Self { name, server, unit, period, timeout, on_loss, word_order, variables: Vec::new() })
     }
 }

@@ -7,7 +7,14 @@ use super::{choice, nearest, number, text};
 pub struct Modbus {
     pub name: Option<String>,
     /// `192.168.0.20:502`
-    pub server: String,
+    pub server: Option<String>,
+    /// A serial line, in place of a server: `/dev/ttyUSB0`.
+    pub port: Option<String>,
+    pub baud_rate: Option<u64>,
+    /// none, even or odd.
+    pub parity: Option<String>,
+    pub data_bits: Option<u64>,
+    pub stop_bits: Option<u64>,
     pub unit: Option<u64>,
     pub period: Option<String>,
     pub timeout: Option<String>,
@@ -15,11 +22,28 @@ pub struct Modbus {
     pub on_loss: Option<String>,
     /// high-first or low-first.
     pub word_order: Option<String>,
+    /// openplc: each input and output has the place that its address has there.
+    pub layout: Option<String>,
     /// Variables or addresses, and what they are at the server.
     pub map: Vec<(String, String)>,
 }
 
-const KEYS: [&str; 8] = ["name", "server", "unit", "period", "timeout", "on-loss", "word-order", "map"];
+const KEYS: [&str; 14] = [
+    "name",
+    "server",
+    "port",
+    "baud-rate",
+    "parity",
+    "data-bits",
+    "stop-bits",
+    "unit",
+    "period",
+    "timeout",
+    "on-loss",
+    "word-order",
+    "layout",
+    "map",
+];
 
 pub fn read(value: &toml::Value) -> Result<Vec<Modbus>, String> {
     let wrong = || "`modbus` must be tables: write `[[modbus]]` above each".to_owned();
@@ -32,12 +56,18 @@ fn one(table: &toml::Table) -> Result<Modbus, String> {
     for (key, value) in table {
         match key.as_str() {
             "name" => modbus.name = Some(text(key, value)?),
-            "server" => modbus.server = text(key, value)?,
+            "server" => modbus.server = Some(text(key, value)?),
+            "port" => modbus.port = Some(text(key, value)?),
+            "baud-rate" => modbus.baud_rate = Some(number(key, value)?),
+            "parity" => modbus.parity = Some(choice(key, value, &["none", "even", "odd"])?),
+            "data-bits" => modbus.data_bits = Some(number(key, value)?),
+            "stop-bits" => modbus.stop_bits = Some(number(key, value)?),
             "unit" => modbus.unit = Some(number(key, value)?),
             "period" => modbus.period = Some(text(key, value)?),
             "timeout" => modbus.timeout = Some(text(key, value)?),
             "on-loss" => modbus.on_loss = Some(choice(key, value, &["hold", "safe", "fault"])?),
             "word-order" => modbus.word_order = Some(choice(key, value, &["high-first", "low-first"])?),
+            "layout" => modbus.layout = Some(choice(key, value, &["openplc"])?),
             "map" => modbus.map = map(value)?,
             _ => {
                 return Err(match nearest(key, KEYS.into_iter()) {
@@ -47,9 +77,12 @@ fn one(table: &toml::Table) -> Result<Modbus, String> {
             }
         }
     }
-    match modbus.server.is_empty() {
-        true => Err("`[[modbus]]` needs a server: server = \"192.168.0.20:502\"".to_owned()),
-        false => Ok(modbus),
+    match (&modbus.server, &modbus.port) {
+        (None, None) => Err(
+            "`[[modbus]]` needs a server: server = \"192.168.0.20:502\", or port = \"/dev/ttyUSB0\" for a serial line"
+                .to_owned(),
+        ),
+        (Some(_), _) | (None, Some(_)) => Ok(modbus),
     }
 }
 

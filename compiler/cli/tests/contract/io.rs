@@ -1,7 +1,9 @@
-//! Inputs and outputs of a running program: a Modbus TCP server, and a process image in shared memory (`docs/io.md`).
+//! Inputs and outputs of a running program: Modbus, and a process image in shared memory (`docs/io.md`).
 
 mod client;
+mod layout;
 mod modbus;
+mod serial;
 mod shared_memory;
 
 use super::{COUNTER, Folder, Ran, has};
@@ -97,6 +99,30 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
         assert!(Instant::now() < limit, "never: {what}");
         std::thread::sleep(Duration::from_millis(2));
     }
+}
+
+/// Whether a program that a test needs exists. Where all tools are expected, it is a mistake if it does not.
+fn has_tool(command: &mut Command, package: &str) -> bool {
+    let is_there = command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|it| it.success());
+    if !is_there {
+        assert!(std::env::var_os("CI").is_none(), "apt-get install {package}");
+        println!("SKIPPED: no {package}");
+    }
+    is_there
+}
+
+/// `mbpoll` with a program's server; `None` where it is not installed.
+fn mbpoll(plant: &Plant) -> Option<impl Fn(&str) -> String + use<>> {
+    if !has_tool(Command::new("mbpoll").arg("-h"), "mbpoll") {
+        return None;
+    }
+    let port = plant.port.to_string();
+    Some(move |arguments: &str| {
+        let mut command = Command::new("mbpoll");
+        let output = command.args(["-m", "tcp", "-0", "-1", "-p", &port]).args(arguments.split(' ')).output().unwrap();
+        assert!(output.status.success(), "{arguments}: {output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    })
 }
 
 #[test]

@@ -64,13 +64,7 @@ impl Server {
             command.args(["-c", script, &port.to_string()]).stderr(Stdio::null());
             command
         };
-        let is_there = python("import pymodbus.server").status().is_ok_and(|it| it.success());
-        if !is_there {
-            assert!(
-                std::env::var_os("CI").is_none(),
-                "no pymodbus: apt-get install python3-pymodbus python3-serial-asyncio"
-            );
-            println!("SKIPPED: no pymodbus");
+        if !super::has_tool(&mut python("import pymodbus.server"), "python3-pymodbus python3-serial-asyncio") {
             return None;
         }
         let mut child = python(SERVER).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
@@ -235,22 +229,9 @@ fn a_wrong_mapping_is_reported_at_its_line() {
 /// What is a slave to us is one to a master that others have written.
 #[test]
 fn mbpoll_reads_and_writes_a_program() {
-    let is_there = Command::new("mbpoll").arg("-V").output().is_ok();
-    if !is_there {
-        assert!(std::env::var_os("CI").is_none(), "no mbpoll: apt-get install mbpoll");
-        println!("SKIPPED: no mbpoll");
-        return;
-    }
     let folder = built("io_mbpoll", PLANT);
     let plant = Plant::start(&folder, "plant", "--cycle 2ms --io modbus:127.0.0.1:0").listening();
-    let mbpoll = |arguments: &str| {
-        let port = plant.port.to_string();
-        let output =
-            Command::new("mbpoll").args(["-m", "tcp", "-0", "-1", "-p", &port]).args(arguments.split(' ')).output();
-        let output = output.unwrap();
-        assert!(output.status.success(), "{arguments}: {output:?}");
-        String::from_utf8(output.stdout).unwrap()
-    };
+    let Some(mbpoll) = super::mbpoll(&plant) else { return };
     mbpoll("-t 4 -r 1028 127.0.0.1 -- 70");
     has(&mbpoll("-t 4 -r 1028 127.0.0.1"), &["[1028]: \t70"]);
     mbpoll("-t 0 -r 0 127.0.0.1 -- 1");

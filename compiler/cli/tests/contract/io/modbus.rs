@@ -6,18 +6,18 @@ use std::io::{Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
-const COILS: u8 = 1;
-const DISCRETE: u8 = 2;
-const HOLDING: u8 = 3;
-const INPUT: u8 = 4;
+pub const COILS: u8 = 1;
+pub const DISCRETE: u8 = 2;
+pub const HOLDING: u8 = 3;
+pub const INPUT: u8 = 4;
 
-struct Client {
+pub struct Client {
     stream: TcpStream,
     number: u16,
 }
 
 impl Client {
-    fn of(plant: &Plant) -> Self {
+    pub fn of(plant: &Plant) -> Self {
         let stream = TcpStream::connect(("127.0.0.1", plant.port)).unwrap();
         stream.set_read_timeout(Some(Duration::from_secs(30))).unwrap();
         Self { stream, number: 0x1234 }
@@ -40,7 +40,7 @@ impl Client {
         answer
     }
 
-    fn ask(&mut self, request: &[u8]) -> Vec<u8> {
+    pub fn ask(&mut self, request: &[u8]) -> Vec<u8> {
         let frame = self.frame(request);
         self.stream.write_all(&frame).unwrap();
         self.receive()
@@ -52,11 +52,11 @@ impl Client {
         (0..usize::from(count)).map(|at| answer[2 + at / 8] >> (at % 8) & 1 != 0).collect()
     }
 
-    fn bit(&mut self, table: u8, at: u16) -> bool {
+    pub fn bit(&mut self, table: u8, at: u16) -> bool {
         self.bits(table, at, 1)[0]
     }
 
-    fn words(&mut self, table: u8, first: u16, count: u16) -> Vec<u16> {
+    pub fn words(&mut self, table: u8, first: u16, count: u16) -> Vec<u16> {
         let answer = self.ask(&[&[table][..], &first.to_be_bytes(), &count.to_be_bytes()].concat());
         assert_eq!(answer[..2], [table, 2 * count as u8], "{answer:?}");
         answer[2..].chunks(2).map(|it| u16::from_be_bytes([it[0], it[1]])).collect()

@@ -106,7 +106,7 @@ impl Plan {
         for (name, place) in &remote.variables {
             let fail = |text: String| Mistake { variable: Some(name.clone()), text };
             let start = start(place).map_err(fail)?;
-            let found = found(map, points, name).map_err(fail)?;
+            let found = values(map, points, name).map_err(fail)?;
             let mut number = start.number;
             for point in found {
                 let placed = placed(&start, number, &point, plan.points.len(), remote.word_order).map_err(fail)?;
@@ -158,7 +158,7 @@ fn start(place: &str) -> Result<Start, String> {
 }
 
 /// The values of a variable, of an array one after the other.
-fn found(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
+pub(super) fn values(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
     let all: Vec<usize> = (0..map.instances.len()).collect();
     let place = path::resolve(map, &all, name)?;
     let end = place.offset + map.size_of(place.ty).max(1);

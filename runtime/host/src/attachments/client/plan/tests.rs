@@ -1,14 +1,15 @@
 //! Which requests a mapping comes to, and what is wrong with others.
 
 use super::*;
+use crate::attachments::client::openplc_layout;
 use crate::fixture::map_with;
-use crate::remote::OnLoss;
+use crate::remote::{Line, OnLoss, Parity, Server};
 use std::time::Duration;
 
 fn remote(variables: &[(&str, &str)], word_order: Option<WordOrder>) -> Remote {
     let time = Duration::from_millis(100);
     let variables = variables.iter().map(|(name, place)| ((*name).to_owned(), (*place).to_owned())).collect();
-    let (name, server) = ("pump".to_owned(), "127.0.0.1:502".to_owned());
+    let (name, server) = ("pump".to_owned(), Server::Tcp("127.0.0.1:502".to_owned()));
     Remote { name, server, unit: 1, period: time, timeout: time, on_loss: OnLoss::Hold, word_order, variables }
 }
 
@@ -121,4 +122,40 @@ fn the_map_carries_it() {
     let inputs = |name| remote(&[(name, "input-register 3")], None);
     let (number, mistake) = wrong(&[inputs("v0"), inputs("%IW0")]);
     assert!(number == 1 && mistake.text.contains("another connection"), "{mistake:?}");
+}
+
+#[test]
+fn the_map_carries_a_serial_line() {
+    let mut before = remote(&[("v0", "input-register 3")], None);
+    let port = "/dev/serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0".to_owned();
+    before.server = Server::Serial(Line { port, baud_rate: 9600, parity: Parity::Odd, stop_bits: 2 });
+    let text = format!("map\t1\nmachine\t64\t8\n{}\n", before.lines().join("\n"));
+    assert_eq!(Map::parse(&text).unwrap().remotes, [before]);
+}
+
+#[test]
+fn a_layout_of_openplc_has_what_no_entry_names() {
+    let own = [remote(&[("v4", "coil 30")], None), remote(&[("%IW0", "input-register 3")], None)];
+    let found = openplc_layout(&plant(), &own);
+    let expected = [
+        ("%IW10", "input-register 10"),
+        ("%IX0.0", "discrete-input 0"),
+        ("%QW0", "holding-register 0"),
+        ("%QX0.1", "coil 1"),
+    ];
+    assert_eq!(found, expected.map(|(name, place)| (name.to_owned(), place.to_owned())));
+}
+
+/// Each is one value; the bits of an input that are also another one's are read with that.
+#[test]
+fn a_layout_of_openplc_has_each_bit_once() {
+    let map = map_with(&[
+        ("WORD", 0, "-", "%IW1"),
+        ("bit:3", 0, "view", "%IX2.3"),
+        ("WORD", 2, "-", "%QW1"),
+        ("bit:3", 2, "view", "%QX2.3"),
+        ("BOOL", 4, "-", "%IX1023.7"),
+    ]);
+    let places: Vec<_> = openplc_layout(&map, &[]).into_iter().map(|it| it.1).collect();
+    assert_eq!(places, ["input-register 1", "holding-register 1", "coil 19", "discrete-input 8191"]);
 }
