@@ -5,7 +5,7 @@ use super::binding::Parameter;
 use super::checker::Checker;
 use super::order::Held;
 use crate::dialect::rules::is_followed;
-use crate::lints::siblings::Siblings;
+use crate::types::siblings::Siblings;
 use crate::types::signature::pin_place;
 use crate::{Span, ast};
 use ast::ArgumentKind;

@@ -1,89 +1,11 @@
 //! Calls within one expression of which one writes what another one reads: there the order in which operands are evaluated
-//! decides. Which calls these are is known when all bodies are.
+//! decides.
 
 use crate::dialect::rules::is_followed;
 use crate::types::declarations::Declarations;
-use staunch_ir::visit::{self, Access};
-use staunch_ir::{Location, Part, Place, Root, Routine, RoutineId, Statement, StatementKind, Use};
+use crate::types::siblings::{Own, Touched, touched};
+use staunch_ir::{Part, Routine, RoutineId, Use};
 use std::collections::HashMap;
-
-/// The calls of one operand, and those of another that is evaluated after it.
-#[derive(Clone, Debug)]
-pub(crate) struct Siblings {
-    pub first: Vec<RoutineId>,
-    pub second: Vec<RoutineId>,
-    /// Some of both are given one variable or instance.
-    pub share: bool,
-    pub at: Location,
-}
-
-/// What a routine touches, itself or by what it calls.
-#[derive(Clone, Copy, Debug, Default)]
-struct Touched {
-    /// Its instance, and what it is given by reference.
-    given: Uses,
-    /// What all can reach.
-    shared: Uses,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Uses {
-    reads: bool,
-    writes: bool,
-}
-
-impl Uses {
-    const ALL: Self = Self { reads: true, writes: true };
-
-    fn add(&mut self, other: Self) {
-        self.reads |= other.reads;
-        self.writes |= other.writes;
-    }
-
-    /// Whether the order of two that touch the same decides.
-    fn meets(self, other: Self) -> bool {
-        self.writes && (other.reads || other.writes) || self.reads && other.writes
-    }
-}
-
-/// What a body touches, and which routines it calls.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Own {
-    touched: Touched,
-    calls: Vec<Called>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Called {
-    callee: RoutineId,
-    /// It is given what the caller was given, or its instance; and what all can reach.
-    gets: [bool; 2],
-}
-
-impl Own {
-    pub fn of(body: &[Statement]) -> Self {
-        let mut own = Self::default();
-        visit::statements(body, &mut |statement| own.statement(statement));
-        own
-    }
-
-    fn statement(&mut self, statement: &Statement) {
-        let mut borrowed = Touched::default();
-        visit::accesses(statement, &mut |place, access| match access {
-            Access::Read => self.touched.access(place, Uses { reads: true, writes: false }),
-            Access::Write => self.touched.access(place, Uses { reads: false, writes: true }),
-            Access::Borrow => borrowed.access(place, Uses::ALL),
-        });
-        match &statement.kind {
-            StatementKind::Call { callee, .. } => {
-                let gets = [borrowed.given.writes, borrowed.shared.writes];
-                self.calls.push(Called { callee: *callee, gets });
-            }
-            StatementKind::External(_) => self.touched.add(Touched { given: borrowed.given, shared: Uses::ALL }),
-            _ => self.touched.add(borrowed),
-        }
-    }
-}
 
 /// Keeps what a routine touches, where the order of calls may be another one: its body may be dropped.
 pub(crate) fn keep(declarations: &mut Declarations<'_>, slot: usize, routine: &Routine) {
@@ -108,45 +30,3 @@ pub(crate) fn note(declarations: &mut Declarations<'_>) {
         }
     }
 }
-
-impl Touched {
-    fn add(&mut self, other: Self) {
-        self.given.add(other.given);
-        self.shared.add(other.shared);
-    }
-
-    fn access(&mut self, place: &Place, uses: Uses) {
-        match place.root {
-            _ if place.is_followed() => self.add(Self { given: uses, shared: uses }),
-            Root::Local(_) => {}
-            Root::Instance | Root::Param(_) => self.given.add(uses),
-            Root::Globals => self.shared.add(uses),
-        }
-    }
-}
-
-/// What a routine touches, itself or by what it calls.
-fn touched(bodies: &Bodies, id: RoutineId, known: &mut HashMap<RoutineId, Touched>) -> Touched {
-    if let Some(it) = known.get(&id) {
-        return *it;
-    }
-    // What calls itself is refused.
-    known.insert(id, Touched::default());
-    let Some(own) = bodies.get(&id) else { return Touched::default() };
-    let mut all = own.touched;
-    for Called { callee, gets: [given, shared] } in &own.calls {
-        let callee = touched(bodies, *callee, known);
-        all.shared.add(callee.shared);
-        if *given {
-            all.given.add(callee.given);
-        }
-        if *shared {
-            all.shared.add(callee.given);
-        }
-    }
-    known.insert(id, all);
-    all
-}
-
-/// By their routines.
-pub(crate) type Bodies = HashMap<RoutineId, Own>;

@@ -1,5 +1,6 @@
 //! What a program declares: what expressions and bodies are checked against.
 
+use super::siblings::{Bodies, Siblings};
 use super::address::{self, Addresses};
 use super::coverage::Coverage;
 use super::generic::{Generics, Instance};
@@ -13,7 +14,6 @@ use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
 use crate::dialect::{self, Dialect, missing};
-use crate::lints::siblings::{Bodies, Siblings};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
 use crate::spelling::{Key, nearest};

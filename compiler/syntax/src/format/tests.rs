@@ -1,3 +1,5 @@
+//! Layouts of small texts.
+
 use super::{Indent, Letters, Style, part, whole};
 
 /// Twice is as once.
