@@ -457,6 +457,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         is_run: true,
         is_tested: false,
         coverage: None,
+        stops: None,
     })
 }
 

@@ -1,6 +1,7 @@
 //! The reference interpreter: runs a program over the bytes of its state, with the runtime's own
 //! operations and blocks. Every back end must do the same.
 
+pub mod debug;
 mod exchange;
 mod execute;
 mod follow;
@@ -10,6 +11,7 @@ mod place;
 use crate::layout::{Layout, usize_of};
 use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
+use debug::Watch;
 use exchange::Exchange;
 use place::Scope;
 use staunch_runtime::{BlockInfo, Context, Fault};
@@ -34,7 +36,7 @@ impl Stop {
 
 /// One running program.
 #[derive(Debug)]
-pub struct Interpreter<'p> {
+pub struct Interpreter<'p, W = ()> {
     program: &'p Program,
     layout: Layout,
     frames: Vec<FrameImage>,
@@ -52,6 +54,7 @@ pub struct Interpreter<'p> {
     budget: Option<u64>,
     steps_left: Option<u64>,
     exchange: Option<Exchange>,
+    watch: W,
 }
 
 /// A routine's locals at the start of a call.
@@ -63,7 +66,7 @@ struct FrameImage {
 
 /// A routine that is running. Positions are offsets in `Interpreter::memory`.
 #[derive(Clone, Copy, Debug)]
-struct Frame {
+pub struct Frame {
     routine: RoutineId,
     instance: usize,
     locals: usize,
@@ -77,6 +80,16 @@ impl<'p> Interpreter<'p> {
     /// # Panics
     /// Here and later if `program` is not verified.
     pub fn new(program: &'p Program) -> Self {
+        Self::watched(program, ())
+    }
+}
+
+impl<'p, W: Watch> Interpreter<'p, W> {
+    /// As [`new`](Interpreter::new), for a run that is watched.
+    ///
+    /// # Panics
+    /// Here and later if `program` is not verified.
+    pub fn watched(program: &'p Program, watch: W) -> Self {
         let layout = Layout::new(program);
         let initial = layout.image(program);
         Self {
@@ -92,6 +105,7 @@ impl<'p> Interpreter<'p> {
             budget: None,
             steps_left: None,
             exchange: None,
+            watch,
         }
     }
 
@@ -167,12 +181,18 @@ impl<'p> Interpreter<'p> {
         self.program
     }
 
+    pub fn watch(&mut self) -> &mut W {
+        &mut self.watch
+    }
+
     /// Runs a routine of a PROGRAM with nothing below it on the stack.
     fn run(&mut self, routine: RoutineId, instance: usize, cx: &Context) -> Result<(), Stop> {
         let frame = self.enter(routine, instance);
+        self.watch.enter(&frame, Location::default());
         let end = self.block(&frame, &self.program.routine(routine).body, cx);
         self.memory.truncate(self.initial.len());
         self.references.clear();
+        self.watch.leave(0);
         end.map(|_| ())
     }
 
@@ -188,7 +208,7 @@ impl<'p> Interpreter<'p> {
         self.references.truncate(frame.references);
     }
 
-    fn scope<'a>(&'a self, frame: &'a Frame) -> Scope<'a> {
+    fn scope<'a>(&'a self, frame: &'a Frame) -> Scope<'a, W> {
         Scope { interpreter: self, frame }
     }
 

@@ -18,6 +18,11 @@ pub struct Place {
 }
 
 impl Place {
+    /// A variable of a type alone, with the offsets of its parts counted from its own start.
+    pub(crate) fn of_type(ty: Type) -> Self {
+        Self { offset: 0, ty, range: None, constant: false, input: false, is_shared: false }
+    }
+
     pub(crate) fn of(variable: &Variable, base: usize) -> Self {
         let Variable { offset, ty, range, constant, view, .. } = *variable;
         let ty = if view { shared(ty) } else { ty };
@@ -138,7 +143,7 @@ fn steps(text: &str) -> Option<Vec<Step<'_>>> {
 }
 
 /// The name of the variable at an offset of the state that has this size.
-pub(crate) fn path_at(map: &Map, offset: usize, size: usize) -> Option<String> {
+pub fn path_at(map: &Map, offset: usize, size: usize) -> Option<String> {
     let (globals, base) = map.globals();
     let found = member_at(map, globals, base, offset, size);
     found.or_else(|| {
@@ -280,6 +285,15 @@ fn follow(map: &Map, mut place: Place, steps: &[Step<'_>]) -> Result<Place, Stri
         };
     }
     Ok(place)
+}
+
+/// The part of a variable of type `ty` that a path leads to: `.a[3]`. Its offset is from the variable.
+///
+/// The error is a sentence without a full stop.
+pub fn part(map: &Map, ty: Type, path: &str) -> Result<Place, String> {
+    let text = format!("variable{path}");
+    let steps = steps(&text).ok_or_else(|| format!("`{path}` does not lead to a part of a variable"))?;
+    follow(map, Place::of_type(ty), &steps[1..])
 }
 
 fn member(map: &Map, place: Place, name: &str) -> Result<Place, String> {

@@ -212,6 +212,9 @@ impl Runner<'_> {
     }
 
     fn is_done(&self) -> bool {
+        if self.options.debugged && self.machine.ends() {
+            return true;
+        }
         match self.options.scans {
             Some(scans) => self.summary.scans >= scans,
             None if self.options.to.is_some() => self.is_past_the_window(self.summary.scans + 1, self.schedule.next()),
@@ -240,6 +243,9 @@ impl Runner<'_> {
             return self.real_scan(subject, number, due, placed.is_some());
         }
         self.stimulate(number, due)?;
+        if self.options.debugged {
+            self.machine.scan_begins(number, due);
+        }
         let ran = self.programs(number, due, placed.is_some());
         self.after(subject, number, due, ran)?;
         Ok(Some(due))
@@ -346,6 +352,7 @@ impl Runner<'_> {
         let is_shown = trace.is_some() || self.options.has_table() || from.is_some() || to.is_some();
         let is_kept = self.real.is_some() || self.retention.is_some();
         let has_input = !self.stimulus.rows.is_empty();
+        let is_kept = is_kept || self.options.debugged;
         self.schedule.only().filter(|_| !is_shown && !is_kept && !has_input && !self.messages.is_there)
     }
 

@@ -1,5 +1,6 @@
 //! Accesses through references: all by the runtime's table of objects.
 
+use super::debug::Watch;
 use super::place::Scope;
 use super::{Frame, Interpreter};
 use crate::evaluate::{Storage, scalar, text};
@@ -31,7 +32,7 @@ impl Memory for Bytes<'_> {
     }
 }
 
-impl Scope<'_> {
+impl<W: Watch> Scope<'_, W> {
     fn table(&self) -> Table<'_> {
         Table::new(&self.interpreter.table)
     }
@@ -112,7 +113,7 @@ impl Scope<'_> {
     }
 }
 
-impl Interpreter<'_> {
+impl<W: Watch> Interpreter<'_, W> {
     pub(super) fn assign_reached(&mut self, frame: &Frame, it: &Reached, value: &Expr) -> Result<(), Fault> {
         let stored = match value.ty {
             Type::String(_) => {

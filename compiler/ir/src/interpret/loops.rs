@@ -1,12 +1,13 @@
 //! Loops, and the turns that they take of the scan.
 
+use super::debug::Watch;
 use super::execute::{Flow, integer};
 use super::{Frame, Interpreter, Stop};
 use crate::evaluate::scalar;
 use crate::{Count, For, Location, Place, Statement, Step, Taking, Value};
 use staunch_runtime::{Context, Fault, FaultKind, ops};
 
-impl<'p> Interpreter<'p> {
+impl<'p, W: Watch> Interpreter<'p, W> {
     pub(super) fn turns(
         &mut self,
         frame: &Frame,
