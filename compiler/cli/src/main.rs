@@ -26,6 +26,9 @@ mod bench;
 mod compare;
 mod convert;
 mod machine;
+
+mod debug;
+
 mod run;
 mod test;
 

@@ -35,7 +35,7 @@ mod lints;
 
 pub use staunch_syntax::{ast, vendor};
 
-pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
+pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, excerpt, render};
 pub use dialect::{Dialect, rules};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;

@@ -93,7 +93,7 @@ pub trait Machine {
     /// The scan of this number comes, at a time of the run. Only where [`Options::debugged`] says so.
     fn scan_begins(&mut self, _number: u64, _time: Time) {}
     /// Whether the run ends with this scan. Only where [`Options::debugged`] says so.
-    fn ends(&self) -> bool {
+    fn ends(&mut self) -> bool {
         false
     }
     /// One scan of an instance. After a fault the state stays as it was at that point.

@@ -211,7 +211,7 @@ impl Runner<'_> {
         ran
     }
 
-    fn is_done(&self) -> bool {
+    fn is_done(&mut self) -> bool {
         if self.options.debugged && self.machine.ends() {
             return true;
         }
