@@ -119,6 +119,7 @@ pub fn parse_expression<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diag
     let expr = whole_expression(kinds, &mut state);
     let mut found = state.diagnostics;
     found.append(&mut tokens.diagnostics);
+    found.iter_mut().for_each(|it| it.message = it.message.replace("the end of the file", "the end of the expression"));
     let is_wrong = found.iter().any(|it| it.severity == Severity::Error);
     diagnostics.append(&mut found);
     expr.filter(|_| !is_wrong)

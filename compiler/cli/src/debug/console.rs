@@ -3,7 +3,7 @@
 use super::call_path::call_path;
 use super::commands::{Command, Commands, HELP};
 use super::stop::Report;
-use super::variables::{Shown, by_path, evaluated, variables};
+use super::variables::{Shown, by_path, evaluated, of_program, variables};
 use crate::args::Run;
 use crate::machine::map_text;
 use crate::output;
@@ -107,8 +107,10 @@ impl<'a> Console<'a> {
         let _ = self.options.print_json(object);
     }
 
+    /// A variable in scope, an expression in scope, or any variable of the program by its path.
     fn print(&self, stopped: &Stopped<'_, Self>, text: &str) {
         let found = by_path(stopped, self.map, text).map_or_else(|| self.evaluate(stopped, text), Ok);
+        let found = found.or_else(|error| of_program(stopped, self.map, text).ok_or(error));
         match (found, self.options.json) {
             (Ok(it), true) => self.object(&format!("{{\"reason\":\"value\",{}}}", it.json())),
             (Ok(Shown { name, ty, value }), false) => output::tell(format_args!("{name} : {ty} = {value}")),
@@ -135,7 +137,7 @@ impl<'a> Console<'a> {
     fn same_place<'q>(&self, stopped: &Stopped<'_, Self>, other: &'q Program) -> Option<&'q Expr> {
         let id = stopped.running().last()?.routine();
         let (here, there) = (stopped.program().routine(id), other.routines.get(id.index())?);
-        let is_alike = here.name == there.name && map_text(stopped.program()) == map_text(other);
+        let is_alike = here.name == there.name && variables_of(stopped.program()) == variables_of(other);
         let mut found = None;
         visit::statements(&there.body, &mut |it| {
             if let Some(AskedThere::Value(value)) = it.kind.as_stop().map(|it| it.asked) {
@@ -144,6 +146,11 @@ impl<'a> Console<'a> {
         });
         found.filter(|_| is_alike)
     }
+}
+
+/// Where all variables are, whatever the sources are called.
+fn variables_of(program: &Program) -> String {
+    map_text(program).lines().filter(|it| !it.starts_with("file\t")).collect::<Vec<_>>().join("\n")
 }
 
 impl Ask for Console<'_> {

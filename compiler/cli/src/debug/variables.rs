@@ -1,6 +1,6 @@
 //! The variables that a stopped routine sees, in declaration order.
 
-use staunch_host::{Map, part_of, same_name, shown};
+use staunch_host::{Map, part_of, place_of, same_name, shown};
 use staunch_ir::interpret::debug::{Ask, Stopped};
 use staunch_ir::{LocalId, Mode, ParamId, Place, Program, Root, RoutineKind, Type, Variable};
 
@@ -54,6 +54,14 @@ pub(super) fn by_path<A: Ask>(stopped: &Stopped<'_, A>, map: &Map, text: &str) -
     let bytes = stopped.bytes(&variable.place).ok()?.get(part.offset..)?;
     let value = shown(map, part.ty, bytes, LONG);
     Some(Shown { name: text.to_owned(), ty: map.type_name(part.ty), value })
+}
+
+/// A variable of the program by its path from a PROGRAM or a global, as `--vars` has it.
+pub(super) fn of_program<A: Ask>(stopped: &Stopped<'_, A>, map: &Map, text: &str) -> Option<Shown> {
+    let running: Vec<usize> = (0..map.instances.len()).collect();
+    let place = place_of(map, &running, text).ok()?;
+    let value = shown(map, place.ty, stopped.state().get(place.offset..)?, LONG);
+    Some(Shown { name: text.to_owned(), ty: map.type_name(place.ty), value })
 }
 
 /// A value that the compiler has evaluated.

@@ -36,6 +36,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(own) = self.decl.log.dialects.get_mut(usize::from(file)) {
             *own = dialect;
         }
+        self.decl.names.read_as_at(file, statement);
         let sources = self.decl.log.sources;
         let written = crate::parse::parse_expression(file, &sources.get(file).text, &mut self.decl.log.diagnostics)?;
         let locals = self.locals.len();

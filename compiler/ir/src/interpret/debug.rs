@@ -189,6 +189,10 @@ impl<A: Ask> Stopped<'_, A> {
         &self.interpreter.watch.running
     }
 
+    pub fn state(&self) -> &[u8] {
+        self.interpreter.state()
+    }
+
     /// What a variable of the innermost routine holds.
     pub fn bytes(&self, place: &Place) -> Result<&[u8], Fault> {
         let Some(running) = self.running().last() else { return Ok(&[]) };
