@@ -9,12 +9,8 @@ use staunch_runtime::{Context, Fault};
 
 /// Where the variables are in a program's state.
 pub fn map(program: &Program) -> Result<Map, String> {
-    Map::parse(&map_text(program)).map_err(|it| it.to_string())
-}
-
-/// The same as text.
-pub fn map_text(program: &Program) -> String {
-    staunch_ir::symbols::map_text(program, &Layout::new(program))
+    let text = staunch_ir::symbols::map_text(program, &Layout::new(program));
+    Map::parse(&text).map_err(|it| it.to_string())
 }
 
 /// Native code in memory.

@@ -2,10 +2,10 @@
 
 use super::call_path::call_path;
 use super::commands::{Command, Commands, HELP};
+use super::map_text;
 use super::stop::Report;
 use super::variables::{Shown, by_path, evaluated, of_program, variables};
 use crate::args::Run;
-use crate::machine::map_text;
 use crate::output;
 use crate::session::{Asked, Session};
 use staunch_frontend::Style;

@@ -9,15 +9,16 @@ mod stop;
 mod variables;
 
 use crate::args::Run;
-use crate::machine::map;
 use crate::session::{Asked, Session};
 use crate::{REJECTED, USAGE, output};
 use commands::Commands;
 use console::Console;
 use machine::Debugged;
 use places::{Found, Places};
-use staunch_host::{Options, json_text};
+use staunch_host::{Map, Options, json_text};
 use staunch_ir::Program;
+use staunch_ir::layout::Layout;
+use staunch_ir::symbols::map_text_with_locals;
 use std::collections::HashSet;
 
 /// The name of the condition in diagnostics.
@@ -36,7 +37,7 @@ pub fn run(session: &Session, args: &Run, options: Options) -> Result<u8, String
     };
     let options = Options { debugged: true, ..options };
     let commands = Commands::of(&args.debug)?;
-    let map = map(&program)?;
+    let map = Map::parse(&map_text(&program)).map_err(|it| it.to_string())?;
     let notes = Notes { options: &options };
     found.iter().flat_map(|it| &it.notes).try_for_each(|it| notes.tell(it))?;
     let breakpoints: HashSet<_> = found.iter().flat_map(|it| it.at.iter().copied()).collect();
@@ -57,6 +58,11 @@ pub fn run(session: &Session, args: &Run, options: Options) -> Result<u8, String
             Ok(error.exit_code())
         }
     }
+}
+
+/// Where variables are, also those that live for one call.
+fn map_text(program: &Program) -> String {
+    map_text_with_locals(program, &Layout::new(program))
 }
 
 /// The program with the condition at each of the breakpoints; `None` where it is wrong, which has been said.

@@ -215,9 +215,4 @@ impl<A: Ask> Stopped<'_, A> {
         }
         Ok(Some(bytes))
     }
-
-    /// Of a state's structure.
-    pub fn size(&self, ty: Type) -> usize {
-        usize_of(self.interpreter.layout.size(ty))
-    }
 }
