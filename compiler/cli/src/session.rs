@@ -5,8 +5,8 @@ use crate::other_dialects::{Advice, advice};
 use crate::{REJECTED, input, output, remotes};
 use staunch_build::{Project, listing};
 use staunch_frontend::{
-    AskedAt, Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Source, Sources,
-    Span, Stops, Style, Test,
+    AskedAt, Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Source,
+    Sources, Span, Stops, Style, Test,
 };
 use staunch_ir::{Location, Program};
 use std::fmt::Display;

@@ -9,9 +9,9 @@ mod loops;
 mod place;
 
 use crate::layout::{Layout, usize_of};
+use crate::stop::StopStatement;
 use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
-use debug::Watch;
 use exchange::Exchange;
 use place::Scope;
 use staunch_runtime::{BlockInfo, Context, Fault};
@@ -55,6 +55,43 @@ pub struct Interpreter<'p, W = ()> {
     steps_left: Option<u64>,
     exchange: Option<Exchange>,
     watch: W,
+}
+
+/// What watches a run. It is a type parameter of the interpreter, so that a run that nobody watches has none of this in its
+/// code: `()` watches nothing.
+pub trait Watch: Sized {
+    /// Whether stops are looked at.
+    const STOPS: bool;
+
+    /// A routine begins, which was called at a place.
+    fn enter(&mut self, frame: &Frame, called_at: Location);
+
+    /// How many routines are running.
+    fn depth(&self) -> usize;
+
+    /// Routines end until so many are running.
+    fn leave(&mut self, depth: usize);
+
+    /// The run is at a stop.
+    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &StopStatement<'_>, at: Location, cx: &Context);
+}
+
+impl Watch for () {
+    const STOPS: bool = false;
+
+    #[inline(always)]
+    fn enter(&mut self, _: &Frame, _: Location) {}
+
+    #[inline(always)]
+    fn depth(&self) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn stop(_: &mut Interpreter<'_, Self>, _: &StopStatement<'_>, _: Location, _: &Context) {}
 }
 
 /// A routine's locals at the start of a call.

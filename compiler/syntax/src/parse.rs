@@ -130,7 +130,8 @@ fn whole_expression<'t, 's>(kinds: &'t [Kind], state: &mut State<'t, 's>) -> Opt
         let read = expression::expression(input).map_err(|it| diagnostics::report(input, it)).ok();
         let (kind, span) = (input.kind(), input.here());
         if read.is_some() && kind != Kind::End {
-            let message = format!("expected the end of the expression, found {}", diagnostics::shown(input, kind, span));
+            let message =
+                format!("expected the end of the expression, found {}", diagnostics::shown(input, kind, span));
             input.report(Diagnostic::new(Code::E0001, span, message).label("the expression is complete before this"));
         }
         while input.next().is_some() {}

@@ -16,8 +16,8 @@ mod domain;
 mod csv;
 mod json;
 mod literal;
-mod spoken;
 mod shown;
+mod spoken;
 mod value;
 
 mod column;
@@ -63,7 +63,7 @@ pub use json::quote as json_text;
 pub use literal::parse as bytes_of;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use minor::{minor_faults_json, minor_faults_note};
-pub use path::{Place, part as part_of, instance_at, resolve as place_of, same as same_name};
+pub use path::{Place, instance_at, part as part_of, resolve as place_of, same as same_name};
 pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
 pub use remote::{OnLoss, Remote, WordOrder};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};

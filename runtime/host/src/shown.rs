@@ -80,7 +80,8 @@ impl Shown<'_> {
     fn members(&mut self, place: Place) {
         let Some(structure) = self.map.structure(place.ty) else { return };
         // What the compiler has added, and what an in-out refers to, is not a value of the user's.
-        let is_shown = |it: &&Variable| !matches!(it.section, Section::Memory | Section::InOut) && !it.name.starts_with("__");
+        let is_shown =
+            |it: &&Variable| !matches!(it.section, Section::Memory | Section::InOut) && !it.name.starts_with("__");
         self.out.push('(');
         for (position, member) in structure.members.iter().filter(is_shown).enumerate() {
             if !self.separate(position) {

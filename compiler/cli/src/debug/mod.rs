@@ -10,7 +10,7 @@ mod variables;
 
 use crate::args::Run;
 use crate::session::{Asked, Session};
-use crate::{REJECTED, USAGE, output};
+use crate::{USAGE, output};
 use commands::Commands;
 use console::Console;
 use machine::Debugged;
@@ -25,7 +25,8 @@ use std::collections::HashSet;
 const CONDITION: &str = "--when";
 
 pub fn run(session: &Session, args: &Run, options: Options) -> Result<u8, String> {
-    let (Some(program), _) = session.with_stops(&[])? else { return Ok(REJECTED) };
+    let (program, errors) = session.with_stops(&[])?;
+    let program = program.ok_or_else(|| errors.concat())?;
     let program = session.choose(&program, args.program.as_deref())?;
     let found = Places::of(&program, &session.sources).find(&args.debug.breakpoints)?;
     let program = match &args.debug.when {

@@ -86,7 +86,7 @@ impl<'a> Places<'a> {
         match (named.as_slice(), &wanted.file) {
             ([(_, number)], _) => Ok(*number),
             ([], Some(file)) => Err(format!("--break {wanted}: no source is named `{file}`")),
-            ([], None) => Err(format!("--break {wanted}: there is no source of your own")),
+            ([], None) => Err(format!("--break {wanted}: all sources are libraries")),
             (_, Some(_)) => Err(format!("--break {wanted}: several sources have this name: {}", list())),
             (_, None) => Err(format!("--break {wanted}: name the file, as in `--break {}:{wanted}`", named[0].0.path)),
         }
@@ -118,7 +118,9 @@ fn refused(path: &str, stops: &[Stop], wanted: &Breakpoint) -> String {
         (Some(before), Some(after)) => {
             format!("{what}; the nearest lines of {path} with statements are {before} and {after}")
         }
-        (Some(line), None) | (None, Some(line)) => format!("{what}; the nearest line of {path} with a statement is {line}"),
+        (Some(line), None) | (None, Some(line)) => {
+            format!("{what}; the nearest line of {path} with a statement is {line}")
+        }
         (None, None) => format!("--break {wanted}: {path} has no statement to stop at"),
     }
 }

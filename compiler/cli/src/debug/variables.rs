@@ -128,9 +128,8 @@ fn own<A: Ask>(stopped: &Stopped<'_, A>) -> Vec<Variable> {
     let locals = routine.locals.iter().take(stopped.declared).enumerate();
     let locals = locals.map(|(at, it)| variable(&it.name, Root::Local(LocalId::next(at)), it.ty));
     // The compiler's own have names that nobody can declare.
-    let is_declared = |it: &Variable| {
-        !it.name.starts_with("__") && it.name.chars().all(|it| it.is_alphanumeric() || it == '_')
-    };
+    let is_declared =
+        |it: &Variable| !it.name.starts_with("__") && it.name.chars().all(|it| it.is_alphanumeric() || it == '_');
     params.chain(locals).filter(is_declared).collect()
 }
 

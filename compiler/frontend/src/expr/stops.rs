@@ -1,4 +1,4 @@
-//! Where a run can stop: before each statement that a user wrote. What is asked there is an expression of the user's in the scope of
+//! Where a run can stop: before each statement that a user wrote. A stop may evaluate an expression of the user's, in the scope of
 //! the statement.
 
 use crate::expr::checker::Checker;

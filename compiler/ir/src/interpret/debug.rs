@@ -1,49 +1,12 @@
-//! A run that can be stopped between two statements. The plain interpreter has none of this in its code: what watches a run is
-//! a type parameter, and `()` watches nothing.
+//! A run that can be stopped between two statements.
 
-use super::{Frame, Interpreter};
+use super::{Frame, Interpreter, Watch};
 use crate::evaluate::{scalar, text};
 use crate::layout::usize_of;
 use crate::stop::{Asked, StopStatement};
 use crate::{Expr, Location, Place, Program, RoutineId, Type, Value};
 use staunch_runtime::{Context, Fault};
 use std::collections::HashSet;
-
-/// What watches a run.
-pub trait Watch: Sized {
-    /// Whether stops are looked at.
-    const STOPS: bool;
-
-    /// A routine begins, which was called at a place.
-    fn enter(&mut self, frame: &Frame, called_at: Location);
-
-    /// How many routines are running.
-    fn depth(&self) -> usize;
-
-    /// Routines end until so many are running.
-    fn leave(&mut self, depth: usize);
-
-    /// The run is at a stop.
-    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &StopStatement<'_>, at: Location, cx: &Context);
-}
-
-impl Watch for () {
-    const STOPS: bool = false;
-
-    #[inline(always)]
-    fn enter(&mut self, _: &Frame, _: Location) {}
-
-    #[inline(always)]
-    fn depth(&self) -> usize {
-        0
-    }
-
-    #[inline(always)]
-    fn leave(&mut self, _: usize) {}
-
-    #[inline(always)]
-    fn stop(_: &mut Interpreter<'_, Self>, _: &StopStatement<'_>, _: Location, _: &Context) {}
-}
 
 /// How a run continues after a stop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +17,7 @@ pub enum Go {
     Step,
     /// To the next statement that is not of what is called.
     Next,
-    /// To the next statement of the caller.
+    /// To the next statement after the return to the caller.
     Out,
     /// There are no more stops.
     Unwatched,
@@ -133,7 +96,8 @@ impl<A> Debugger<A> {
             Go::On | Go::Unwatched => false,
             Go::Step => true,
             Go::Next => self.running.len() <= self.depth,
-            Go::Out => self.running.len() < self.depth,
+            // Its end is seen where the routine leaves.
+            Go::Out => false,
         }
     }
 }
@@ -151,6 +115,9 @@ impl<A: Ask> Watch for Debugger<A> {
 
     fn leave(&mut self, depth: usize) {
         self.running.truncate(depth);
+        if self.go == Go::Out && depth < self.depth {
+            self.go = Go::Step;
+        }
     }
 
     fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &StopStatement<'_>, at: Location, cx: &Context) {

@@ -1,7 +1,6 @@
 //! Statements: branches, writes and calls.
 
-use super::debug::Watch;
-use super::{Frame, Interpreter, Stop};
+use super::{Frame, Interpreter, Stop, Watch};
 use crate::evaluate::{scalar, text};
 use crate::layout::usize_of;
 use crate::{

@@ -1,8 +1,7 @@
 //! Accesses through references: all by the runtime's table of objects.
 
-use super::debug::Watch;
 use super::place::Scope;
-use super::{Frame, Interpreter};
+use super::{Frame, Interpreter, Watch};
 use crate::evaluate::{Storage, scalar, text};
 use crate::layout::usize_of;
 use crate::reference::{Followed, followed, view, wanted};

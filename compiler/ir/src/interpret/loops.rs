@@ -1,8 +1,7 @@
 //! Loops, and the turns that they take of the scan.
 
-use super::debug::Watch;
 use super::execute::{Flow, integer};
-use super::{Frame, Interpreter, Stop};
+use super::{Frame, Interpreter, Stop, Watch};
 use crate::evaluate::scalar;
 use crate::{Count, For, Location, Place, Statement, Step, Taking, Value};
 use staunch_runtime::{Context, Fault, FaultKind, ops};

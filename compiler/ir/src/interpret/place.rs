@@ -1,7 +1,6 @@
 //! The places of a running routine: where they are in the interpreter's memory.
 
-use super::debug::Watch;
-use super::{Frame, Interpreter};
+use super::{Frame, Interpreter, Watch};
 use crate::evaluate::{Storage, scalar, string_type};
 use crate::layout::usize_of;
 use crate::{Chars, Expr, FaultKind, FieldId, Location, Place, Projection, Root, Type, Value};
