@@ -2,9 +2,8 @@
 
 use super::call_path::call_path;
 use super::commands::{Command, Commands, HELP};
-use super::map_text;
 use super::stop::Report;
-use super::variables::{Shown, by_path, evaluated, of_program, variables};
+use super::variables::{Shown, by_path, evaluated, map_text, of_program, variables};
 use crate::args::Run;
 use crate::output;
 use crate::session::{Asked, Session};
@@ -68,7 +67,7 @@ impl<'a> Console<'a> {
                 Cause::Faulted(fault) => Some(fault),
                 Cause::Breakpoint | Cause::Step => None,
             },
-            path: call_path(stopped, self.map),
+            path: call_path(stopped, self.map, &self.session.sources),
             variables: variables(stopped, self.map),
             sources: &self.session.sources,
         };

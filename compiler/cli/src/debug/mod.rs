@@ -17,9 +17,8 @@ use machine::Debugged;
 use places::{Found, Places};
 use staunch_host::{Map, Options, json_text};
 use staunch_ir::Program;
-use staunch_ir::layout::Layout;
-use staunch_ir::symbols::map_text_with_locals;
 use std::collections::HashSet;
+use variables::map_text;
 
 /// The name of the condition in diagnostics.
 const CONDITION: &str = "--when";
@@ -59,11 +58,6 @@ pub fn run(session: &Session, args: &Run, options: Options) -> Result<u8, String
             Ok(error.exit_code())
         }
     }
-}
-
-/// Where variables are, also those that live for one call.
-fn map_text(program: &Program) -> String {
-    map_text_with_locals(program, &Layout::new(program))
 }
 
 /// The program with the condition at each of the breakpoints; `None` where it is wrong, which has been said.

@@ -2,6 +2,8 @@
 
 use staunch_host::{Map, part_of, place_of, same_name, shown};
 use staunch_ir::interpret::debug::{Ask, Stopped};
+use staunch_ir::layout::Layout;
+use staunch_ir::symbols::map_text_with_locals;
 use staunch_ir::{LocalId, Mode, ParamId, Place, Program, Root, RoutineKind, Type, Variable};
 
 /// A variable with its value, as Structured Text writes them.
@@ -24,6 +26,11 @@ pub(super) struct Variables {
 /// Characters of a value among others, and of one that is asked for.
 const SHORT: usize = 100;
 const LONG: usize = 2000;
+
+/// Where variables are, also those that live for one call.
+pub(super) fn map_text(program: &Program) -> String {
+    map_text_with_locals(program, &Layout::new(program))
+}
 
 /// All that the innermost routine declares, and the instance that it works on.
 pub(super) fn variables<A: Ask>(stopped: &Stopped<'_, A>, map: &Map) -> Variables {

@@ -217,11 +217,19 @@ fn session(folder: &Folder, at: &str, commands: &str) -> Vec<String> {
 #[test]
 fn commands_step_into_over_and_out_of_calls() {
     let folder = plant("debug_commands");
-    let places = session(&folder, "29", "c\ns\ns\nn\n\n");
+    let places = session(&folder, "29", "c\ns\ns\nn\n\n\n");
     // The second turn; its block, whose IF is one line; over the call of Step; the next scan's first statement.
     assert_eq!(
         places,
-        ["plant.st:29:5", "plant.st:29:5", "plant.st:18:1", "plant.st:19:1", "plant.st:19:12", "plant.st:19:26"]
+        [
+            "plant.st:29:5",
+            "plant.st:29:5",
+            "plant.st:18:1",
+            "plant.st:19:1",
+            "plant.st:19:12",
+            "plant.st:19:26",
+            "plant.st:25:1"
+        ]
     );
     // Nothing follows in the callers, so the next statement is one of the next scan; in that, the breakpoint comes first.
     let out = session(&folder, "15", "s\no\no\nq\n");
@@ -339,6 +347,41 @@ END_CONFIGURATION
             "\na1 > c\n  n : INT = 1\n",
         ],
     );
+}
+
+#[test]
+fn a_path_leads_through_methods_of_other_instances_and_of_base_classes() {
+    let text = "INTERFACE I_Node
+METHOD Go : INT VAR_INPUT depth : INT; END_VAR END_METHOD
+END_INTERFACE
+FUNCTION_BLOCK Base
+VAR v : INT; END_VAR
+METHOD PROTECTED Note VAR_INPUT depth : INT; END_VAR
+v := depth;
+END_METHOD
+END_FUNCTION_BLOCK
+FUNCTION_BLOCK Node EXTENDS Base IMPLEMENTS I_Node
+VAR next : I_Node; has : BOOL; END_VAR
+METHOD PUBLIC Link VAR_INPUT n : I_Node; END_VAR
+next := n; has := TRUE;
+END_METHOD
+METHOD PROTECTED OVERRIDE Note VAR_INPUT depth : INT; END_VAR
+SUPER.Note(depth);
+END_METHOD
+METHOD PUBLIC Go : INT VAR_INPUT depth : INT; END_VAR
+Note(depth);
+IF has THEN Go := next.Go(depth + 1) + 1; ELSE Go := 0; END_IF
+END_METHOD
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR a, b : Node; r : INT; END_VAR
+a.Link(b);
+r := a.Go(1);
+END_PROGRAM
+";
+    let folder = Folder::with("debug_methods", &[("plant.st", text)]);
+    let err = run_when(&folder, "--break 7", "depth = 2").err(0);
+    has(&err, &["\nMain > a > Go > Main.b > Go > Note > Note\n", "depth : INT = 2\n", "v     : INT = 0\n"]);
 }
 
 #[test]
