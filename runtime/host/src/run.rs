@@ -211,10 +211,7 @@ impl Runner<'_> {
         ran
     }
 
-    fn is_done(&mut self) -> bool {
-        if self.options.debugged && self.machine.ends() {
-            return true;
-        }
+    fn is_done(&self) -> bool {
         match self.options.scans {
             Some(scans) => self.summary.scans >= scans,
             None if self.options.to.is_some() => self.is_past_the_window(self.summary.scans + 1, self.schedule.next()),
@@ -248,7 +245,8 @@ impl Runner<'_> {
         }
         let ran = self.programs(number, due, placed.is_some());
         self.after(subject, number, due, ran)?;
-        Ok(Some(due))
+        let ends = self.options.debugged && self.machine.ends();
+        Ok((!ends).then_some(due))
     }
 
     /// In real time, one program runs at a time: its scan sees when it really begins.
