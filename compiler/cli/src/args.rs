@@ -237,9 +237,11 @@ pub struct Run {
     /// Two or three numbers that a picture (`--trace OUT.svg`) shows in one lane: a,b; may be repeated
     #[arg(long, value_name = "NAMES", requires = "trace")]
     pub overlay: Vec<String>,
-    /// The back end that runs the program
-    #[arg(long, value_enum, default_value_t = Backend::Native)]
-    pub backend: Backend,
+    /// The back end that runs the program [default: native; interpret with --break]
+    #[arg(long, value_enum)]
+    pub backend: Option<Backend>,
+    #[command(flatten)]
+    pub debug: Debug,
     /// Keep retained variables in this file
     #[arg(long, value_name = "FILE")]
     pub retain: Option<PathBuf>,
@@ -259,6 +261,54 @@ pub struct Run {
     /// With --io, or with Modbus servers in staunch.toml, what outputs do at the end and after a fault [default: zero]
     #[arg(long, value_name = "zero|hold", requires = "realtime", value_parser = AtEnd::parse)]
     pub io_stop: Option<AtEnd>,
+}
+
+/// Where a run stops, so that its variables can be seen.
+#[derive(Clone, Debug, Args)]
+pub struct Debug {
+    /// Stop before the statement at this line, and show the variables; may be repeated
+    #[arg(long = "break", value_name = "[FILE:]LINE", value_parser = Breakpoint::parse, conflicts_with = "realtime")]
+    pub breakpoints: Vec<Breakpoint>,
+    /// With --break, stop only where this BOOL is TRUE: an expression as it could be written at that line
+    #[arg(long, value_name = "EXPR", requires = "breakpoints")]
+    pub when: Option<String>,
+    /// With --break, print so many stops without asking for commands, and end the run after the last of them; 0 for all
+    /// stops [default: 1, unless commands can be read from a terminal]
+    #[arg(long, value_name = "N", requires = "breakpoints")]
+    pub stops: Option<u64>,
+    /// With --break, read the commands from this file, or from standard input for -
+    #[arg(long, value_name = "FILE", requires = "breakpoints", conflicts_with = "stops")]
+    pub commands: Option<PathBuf>,
+}
+
+/// A line of a source.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Breakpoint {
+    /// The path, or the end of it; `None` for the only source.
+    pub file: Option<String>,
+    /// From 1.
+    pub line: u32,
+}
+
+impl Breakpoint {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (file, line) = match text.rsplit_once(':') {
+            Some((file, line)) => (Some(file.to_owned()), line),
+            None => (None, text),
+        };
+        let line = line.parse().ok().filter(|it| *it > 0).filter(|_| file.as_deref() != Some(""));
+        let line = line.ok_or("write a line, 12, or a file and a line, motor.st:12")?;
+        Ok(Self { file, line })
+    }
+}
+
+impl std::fmt::Display for Breakpoint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.file {
+            Some(file) => write!(f, "{file}:{}", self.line),
+            None => write!(f, "{}", self.line),
+        }
+    }
 }
 
 /// How a run in real time keeps its time.

@@ -27,6 +27,9 @@ mod bench;
 mod compare;
 mod convert;
 mod machine;
+
+mod debug;
+
 mod run;
 mod test;
 

@@ -4,7 +4,7 @@ use crate::args::{self, Backend, MessageFormat, Opt, Run};
 use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart};
+use crate::{REJECTED, apart, debug};
 use staunch_host::{AtEnd, Io, Machine, Map, Moment, Options, Overrun, Pacing};
 use staunch_ir::Program;
 use std::ffi::OsString;
@@ -14,7 +14,15 @@ use std::process::Command;
 pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
     let Some(program) = session.program_to_run(args.program.as_deref())? else { return Ok(REJECTED) };
     apart::run(session, args)?;
-    match args.backend {
+    if !args.debug.breakpoints.is_empty() {
+        return match args.backend {
+            None | Some(Backend::Interpret) => debug::run(session, args, options(session, args)?),
+            Some(Backend::Native | Backend::Rust) => {
+                Err("--break is for --backend interpret: compiled code does not stop".to_owned())
+            }
+        };
+    }
+    match args.backend.unwrap_or(Backend::Native) {
         Backend::Native => {
             let (mut machine, map) = Native::new(&program)?;
             scans(session, args, &map, &mut machine)
@@ -68,6 +76,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         pacing: pacing(&args.pacing),
         io: Io { connections: args.io.clone(), at_end: args.io_stop.unwrap_or_default() },
         table: true,
+        debugged: false,
         quiet: session.common.quiet,
     })
 }

@@ -5,14 +5,26 @@ use crate::other_dialects::{Advice, advice};
 use crate::{REJECTED, input, output, remotes};
 use staunch_build::{Project, listing};
 use staunch_frontend::{
-    Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Sources, Span,
-    Style, Test,
+    AskedAt, Compilation, CoveragePoint, Diagnostic, Dialect, Fix, Format, Level, Levels, Options, Severity, Source,
+    Sources, Span, Stops, Style, Test,
 };
-use staunch_ir::Program;
+use staunch_ir::{Location, Program};
 use std::fmt::Display;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+/// An expression that is asked before a statement.
+#[derive(Clone, Copy, Debug)]
+pub struct Asked<'a> {
+    /// Of the statement.
+    pub at: Location,
+    /// What diagnostics call the expression's source.
+    pub name: &'a str,
+    pub text: &'a str,
+    /// It is a condition; else any value.
+    pub is_condition: bool,
+}
 
 #[derive(Debug)]
 pub struct Session {
@@ -80,6 +92,27 @@ impl Session {
     pub fn compile_to_build(&self, sources: &Sources) -> Result<Compilation, String> {
         let options = Options { is_run: false, ..options(&self.common, &self.project)? };
         Ok(staunch_frontend::compile(sources, &options))
+    }
+
+    /// The same program with stops before its statements, and what is asked there. The sources are those of the diagnostics,
+    /// which are about what is asked; the program is there only without them.
+    pub fn with_stops(&self, asked: &[Asked<'_>]) -> Result<(Option<Program>, Vec<String>), String> {
+        let own = self.sources.files().iter().filter(|it| !it.is_of_library()).count();
+        let mut sources = self.sources.clone();
+        let mut stops = Stops { files: u16::try_from(own).unwrap_or(u16::MAX), asked: Vec::new() };
+        for it in asked {
+            let expression = u16::try_from(sources.files().len()).map_err(|_| "too many sources".to_owned())?;
+            sources.add(Source::expression(it.name, it.text.to_owned()));
+            stops.asked.push(AskedAt { at: it.at, expression, is_condition: it.is_condition });
+        }
+        let options = Options { stops: Some(stops), ..options(&self.common, &self.project)? };
+        let compilation = staunch_frontend::compile(&sources, &options);
+        let mut errors: Vec<_> = compilation.diagnostics.iter().filter(|it| it.severity == Severity::Error).collect();
+        // The same expression is asked at several places.
+        errors.dedup_by(|a, b| a.message == b.message && a.span.start == b.span.start);
+        let (format, style) = (self.format(), Style { color: self.color() });
+        let rendered = errors.into_iter().map(|it| staunch_frontend::render(it, &sources, format, style)).collect();
+        Ok((compilation.program, rendered))
     }
 
     /// The program that is not tests alone: what `run` would run. There is nothing more to say of it.
@@ -284,12 +317,16 @@ impl Session {
         Ok(errors)
     }
 
-    fn print(&self, diagnostics: &[Diagnostic], errors: usize) -> Result<(), String> {
-        let format = match self.common.format() {
+    fn format(&self) -> Format {
+        match self.common.format() {
             MessageFormat::Human => Format::Human,
             MessageFormat::Short => Format::Short,
             MessageFormat::Json => Format::Json,
-        };
+        }
+    }
+
+    fn print(&self, diagnostics: &[Diagnostic], errors: usize) -> Result<(), String> {
+        let format = self.format();
         let style = Style { color: self.color() };
         let shown = diagnostics.iter().filter(|it| !self.common.quiet || it.severity == Severity::Error);
         let mut text = String::new();
@@ -310,7 +347,7 @@ impl Session {
         Ok(())
     }
 
-    fn color(&self) -> bool {
+    pub fn color(&self) -> bool {
         match self.common.color() {
             Color::Always => {
                 shows_colors();
@@ -463,6 +500,7 @@ fn options(common: &Common, project: &Project) -> Result<Options, String> {
         is_run: true,
         is_tested: false,
         coverage: None,
+        stops: None,
     })
 }
 

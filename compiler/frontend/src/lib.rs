@@ -35,11 +35,11 @@ mod lints;
 
 pub use staunch_syntax::{ast, format, vendor};
 
-pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, render};
+pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, excerpt, render};
 pub use dialect::{Dialect, rules};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
-pub use options::{OPEN_OPTIONS, OpenOption, Options, Question};
+pub use options::{AskedAt, OPEN_OPTIONS, OpenOption, Options, Question, Stops};
 pub use parse::{parse, parse_file};
 pub use prelude::{Declares, UNITS as LIBRARY, Unit as LibraryUnit};
 pub use source::{Source, Sources, Span};
@@ -280,6 +280,10 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
     let mut files = Vec::new();
     let mut is_broken = false;
     for (source, number) in sources.files().iter().zip(0u16..) {
+        if source.is_expression() {
+            files.push(ast::File::default());
+            continue;
+        }
         let before = diagnostics.len();
         diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
         if source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent)) {

@@ -1,7 +1,7 @@
 //! How a program is read.
 
 use crate::dialect::Dialect;
-use staunch_ir::{BlockId, Part, Use, Uses};
+use staunch_ir::{BlockId, Location, Part, Use, Uses};
 use staunch_runtime::{BLOCKS, BlockOption};
 
 /// How to read the sources.
@@ -32,6 +32,27 @@ pub struct Options {
     pub is_tested: bool,
     /// Counts what is executed of the first so many sources.
     pub coverage: Option<u16>,
+    /// A run can stop before each statement of the user's.
+    pub stops: Option<Stops>,
+}
+
+/// Where a run can stop, and what is evaluated there.
+#[derive(Clone, Debug, Default)]
+pub struct Stops {
+    /// The sources with stops: this many, from the first.
+    pub files: u16,
+    pub asked: Vec<AskedAt>,
+}
+
+/// What is asked before a statement.
+#[derive(Clone, Copy, Debug)]
+pub struct AskedAt {
+    /// Of the statement.
+    pub at: Location,
+    /// The source that [is](crate::Source::is_expression) the expression.
+    pub expression: u16,
+    /// It is a condition; else any value.
+    pub is_condition: bool,
 }
 
 impl Options {

@@ -1,6 +1,7 @@
 //! The reference interpreter: runs a program over the bytes of its state, with the runtime's own
 //! operations and blocks. Every back end must do the same.
 
+pub mod debug;
 mod exchange;
 mod execute;
 mod follow;
@@ -8,6 +9,7 @@ mod loops;
 mod place;
 
 use crate::layout::{Layout, usize_of};
+use crate::stop::StopStatement;
 use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
 use exchange::Exchange;
@@ -34,7 +36,7 @@ impl Stop {
 
 /// One running program.
 #[derive(Debug)]
-pub struct Interpreter<'p> {
+pub struct Interpreter<'p, W = ()> {
     program: &'p Program,
     layout: Layout,
     frames: Vec<FrameImage>,
@@ -52,6 +54,44 @@ pub struct Interpreter<'p> {
     budget: Option<u64>,
     steps_left: Option<u64>,
     exchange: Option<Exchange>,
+    watch: W,
+}
+
+/// What watches a run. It is a type parameter of the interpreter, so that a run that nobody watches has none of this in its
+/// code: `()` watches nothing.
+pub trait Watch: Sized {
+    /// Whether stops are looked at.
+    const STOPS: bool;
+
+    /// A routine begins, which was called at a place.
+    fn enter(&mut self, frame: &Frame, called_at: Location);
+
+    /// How many routines are running.
+    fn depth(&self) -> usize;
+
+    /// Routines end until so many are running.
+    fn leave(&mut self, depth: usize);
+
+    /// The run is at a stop.
+    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &StopStatement<'_>, at: Location, cx: &Context);
+}
+
+impl Watch for () {
+    const STOPS: bool = false;
+
+    #[inline(always)]
+    fn enter(&mut self, _: &Frame, _: Location) {}
+
+    #[inline(always)]
+    fn depth(&self) -> usize {
+        0
+    }
+
+    #[inline(always)]
+    fn leave(&mut self, _: usize) {}
+
+    #[inline(always)]
+    fn stop(_: &mut Interpreter<'_, Self>, _: &StopStatement<'_>, _: Location, _: &Context) {}
 }
 
 /// A routine's locals at the start of a call.
@@ -63,7 +103,7 @@ struct FrameImage {
 
 /// A routine that is running. Positions are offsets in `Interpreter::memory`.
 #[derive(Clone, Copy, Debug)]
-struct Frame {
+pub struct Frame {
     routine: RoutineId,
     instance: usize,
     locals: usize,
@@ -77,6 +117,16 @@ impl<'p> Interpreter<'p> {
     /// # Panics
     /// Here and later if `program` is not verified.
     pub fn new(program: &'p Program) -> Self {
+        Self::watched(program, ())
+    }
+}
+
+impl<'p, W: Watch> Interpreter<'p, W> {
+    /// As [`new`](Interpreter::new), for a run that is watched.
+    ///
+    /// # Panics
+    /// Here and later if `program` is not verified.
+    pub fn watched(program: &'p Program, watch: W) -> Self {
         let layout = Layout::new(program);
         let initial = layout.image(program);
         Self {
@@ -92,6 +142,7 @@ impl<'p> Interpreter<'p> {
             budget: None,
             steps_left: None,
             exchange: None,
+            watch,
         }
     }
 
@@ -167,12 +218,18 @@ impl<'p> Interpreter<'p> {
         self.program
     }
 
+    pub fn watch(&mut self) -> &mut W {
+        &mut self.watch
+    }
+
     /// Runs a routine of a PROGRAM with nothing below it on the stack.
     fn run(&mut self, routine: RoutineId, instance: usize, cx: &Context) -> Result<(), Stop> {
         let frame = self.enter(routine, instance);
+        self.watch.enter(&frame, Location::default());
         let end = self.block(&frame, &self.program.routine(routine).body, cx);
         self.memory.truncate(self.initial.len());
         self.references.clear();
+        self.watch.leave(0);
         end.map(|_| ())
     }
 
@@ -188,7 +245,7 @@ impl<'p> Interpreter<'p> {
         self.references.truncate(frame.references);
     }
 
-    fn scope<'a>(&'a self, frame: &'a Frame) -> Scope<'a> {
+    fn scope<'a>(&'a self, frame: &'a Frame) -> Scope<'a, W> {
         Scope { interpreter: self, frame }
     }
 

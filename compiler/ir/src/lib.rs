@@ -52,6 +52,7 @@ pub mod reference;
 pub mod shapes;
 pub mod stack;
 pub mod startup;
+pub mod stop;
 pub mod symbols;
 pub mod taking;
 pub mod turns;

@@ -48,8 +48,17 @@ pub const VERSION: u32 = 1;
 /// `REFERENCE`, or `enum:id`, `array:id`, `struct:id`, `block:id`. A
 /// variable that lives for one call has no record.
 pub fn map_text(program: &Program, layout: &Layout) -> String {
+    write_map(program, layout, Blocks::OfState)
+}
+
+/// The same, with the standard blocks that live for one call: what a debugger reads.
+pub fn map_text_with_locals(program: &Program, layout: &Layout) -> String {
+    write_map(program, layout, Blocks::All)
+}
+
+fn write_map(program: &Program, layout: &Layout, blocks: Blocks) -> String {
     let (used, startup) = (used_globals(program), Startup::new(program));
-    let mut map = Map { program, layout, used, startup, text: String::new() };
+    let mut map = Map { program, layout, used, startup, blocks, text: String::new() };
     map.write().expect("writing to a String does not fail");
     map.text
 }
@@ -59,7 +68,16 @@ struct Map<'a> {
     layout: &'a Layout,
     used: BTreeSet<FieldId>,
     startup: Startup<'a>,
+    blocks: Blocks,
     text: String,
+}
+
+/// Which standard blocks the map describes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Blocks {
+    OfState,
+    /// Also those of local variables.
+    All,
 }
 
 /// What a `field` or `variable` line says after its place.
@@ -220,7 +238,9 @@ impl Map<'_> {
     fn blocks(&mut self) -> fmt::Result {
         let fields = self.program.structs.iter().flat_map(|structure| &structure.fields).map(|field| field.ty);
         let elements = self.program.arrays.iter().map(|array| array.element);
-        let used: BTreeSet<BlockId> = fields.chain(elements).filter_map(block_of).collect();
+        let locals = self.program.routines.iter().flat_map(|it| &it.locals).map(|it| it.ty);
+        let locals = locals.filter(|_| self.blocks == Blocks::All);
+        let used: BTreeSet<BlockId> = fields.chain(elements).chain(locals).filter_map(block_of).collect();
         used.into_iter().try_for_each(|id| self.block(id))
     }
 

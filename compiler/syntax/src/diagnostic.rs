@@ -8,7 +8,7 @@ pub mod wording;
 pub use codes::Code;
 pub use levels::lint;
 pub use levels::{Level, Levels};
-pub use render::{Format, Style, render};
+pub use render::{Format, Style, excerpt, render};
 
 use crate::source::Span;
 

@@ -50,14 +50,14 @@ mod tests;
 use chumsky::{Parser, input::InputRef, primitive::custom};
 
 use crate::{
-    ast::File,
-    diagnostic::{Code, Diagnostic},
+    ast::{Expr, File},
+    diagnostic::{Code, Diagnostic, Severity},
     lex::{Kind, Known, lex_with},
     source::{Sources, Span},
 };
 
 pub use diagnostics::{address_without_sign, controller_service, reserved};
-use parser::{Extra, State};
+use parser::{Extra, State, TokenReader};
 pub use pragma::attribute;
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
@@ -109,6 +109,35 @@ pub fn parse_with<'s>(
         nonretentive,
         c_code,
     }
+}
+
+/// The expression that is all of a text. `None` where it does not parse, which is reported.
+pub fn parse_expression<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> Option<Expr<'s>> {
+    let mut tokens = lex_with(file, text, &[], Known::Never);
+    let mut state = State::new(file, text, &tokens, namespace::file(file, text));
+    let kinds: &[Kind] = &state.tokens.kinds;
+    let expr = whole_expression(kinds, &mut state);
+    let mut found = state.diagnostics;
+    found.append(&mut tokens.diagnostics);
+    found.iter_mut().for_each(|it| it.message = it.message.replace("the end of the file", "the end of the expression"));
+    let is_wrong = found.iter().any(|it| it.severity == Severity::Error);
+    diagnostics.append(&mut found);
+    expr.filter(|_| !is_wrong)
+}
+
+fn whole_expression<'t, 's>(kinds: &'t [Kind], state: &mut State<'t, 's>) -> Option<Expr<'s>> {
+    let whole = custom(|input: &mut InputRef<'t, '_, &'t [Kind], Extra<'t, 's>>| {
+        let read = expression::expression(input).map_err(|it| diagnostics::report(input, it)).ok();
+        let (kind, span) = (input.kind(), input.here());
+        if read.is_some() && kind != Kind::End {
+            let message =
+                format!("expected the end of the expression, found {}", diagnostics::shown(input, kind, span));
+            input.report(Diagnostic::new(Code::E0001, span, message).label("the expression is complete before this"));
+        }
+        while input.next().is_some() {}
+        Ok(read)
+    });
+    whole.parse_with_state(kinds, state).into_output().flatten()
 }
 
 fn parse_items<'t, 's>(state: &mut State<'t, 's>) -> Vec<crate::ast::Item<'s>> {

@@ -39,6 +39,8 @@ pub struct Source {
     library: Option<Box<str>>,
     /// It is a part of the compiler, whatever its path is.
     is_bundled: bool,
+    /// It is one expression, which is asked about the program, and nothing of the program.
+    is_expression: bool,
 }
 
 /// The file that a text is made of.
@@ -135,7 +137,17 @@ impl Source {
             origin: None,
             library: None,
             is_bundled: false,
+            is_expression: false,
         }
+    }
+
+    /// An expression that is asked about a program: what is said of it has this name.
+    pub fn expression(name: impl Into<String>, text: String) -> Self {
+        Self { is_expression: true, ..Self::new(name, text) }
+    }
+
+    pub fn is_expression(&self) -> bool {
+        self.is_expression
     }
 
     /// The Structured Text in a file, also in one of another system's.

@@ -16,6 +16,7 @@ mod domain;
 mod csv;
 mod json;
 mod literal;
+mod shown;
 mod spoken;
 mod value;
 
@@ -62,18 +63,19 @@ pub use json::quote as json_text;
 pub use literal::parse as bytes_of;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use minor::{minor_faults_json, minor_faults_note};
-pub use path::{Place, resolve as place_of};
+pub use path::{Place, instance_at, part as part_of, resolve as place_of, same as same_name};
 pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
 pub use remote::{Line, OnLoss, Parity, Remote, Server, WordOrder};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};
 pub use run::{Moment, Options, Summary, run};
 pub use schedule::DEFAULT_CYCLE;
+pub use shown::shown;
 pub use start::{Event, retained};
 pub use value::{format_character, format_time, format_time_as, value_at};
 
 pub use staunch_runtime::Elementary;
 
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::{Context, Fault, Time};
 
 /// A program that can be scanned: its state as bytes, laid out as its map says.
 pub trait Machine {
@@ -88,6 +90,12 @@ pub trait Machine {
     fn init(&mut self);
     /// An event has started the program again: what it does not keep is initial.
     fn starts_again(&mut self, _: Event) {}
+    /// The scan of this number comes, at a time of the run. Only where [`Options::debugged`] says so.
+    fn scan_begins(&mut self, _number: u64, _time: Time) {}
+    /// Whether the run ends with this scan. Only where [`Options::debugged`] says so.
+    fn ends(&mut self) -> bool {
+        false
+    }
     /// One scan of an instance. After a fault the state stays as it was at that point.
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault>;
 }

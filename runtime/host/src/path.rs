@@ -18,6 +18,11 @@ pub struct Place {
 }
 
 impl Place {
+    /// A variable of a type alone, with the offsets of its parts counted from its own start.
+    pub(crate) fn of_type(ty: Type) -> Self {
+        Self { offset: 0, ty, range: None, constant: false, input: false, is_shared: false }
+    }
+
     pub(crate) fn of(variable: &Variable, base: usize) -> Self {
         let Variable { offset, ty, range, constant, view, .. } = *variable;
         let ty = if view { shared(ty) } else { ty };
@@ -137,14 +142,33 @@ fn steps(text: &str) -> Option<Vec<Step<'_>>> {
     }
 }
 
+/// What is looked for in the state: where it is, how large it is, and perhaps what it is.
+#[derive(Clone, Copy)]
+struct Wanted {
+    offset: usize,
+    size: usize,
+    ty: Option<Type>,
+}
+
 /// The name of the variable at an offset of the state that has this size.
 pub(crate) fn path_at(map: &Map, offset: usize, size: usize) -> Option<String> {
+    path_to(map, Wanted { offset, size, ty: None })
+}
+
+/// The name of the variable of type `ty` at an offset of the state: `Main.motors[2]`, or of a PROGRAM's instance.
+pub fn instance_at(map: &Map, offset: usize, ty: Type) -> Option<String> {
+    let program = map.instances.iter().find(|it| (it.offset, it.ty) == (offset, ty));
+    let wanted = Wanted { offset, size: map.size_of(ty), ty: Some(ty) };
+    program.map(|it| it.name.clone()).or_else(|| path_to(map, wanted))
+}
+
+fn path_to(map: &Map, wanted: Wanted) -> Option<String> {
     let (globals, base) = map.globals();
-    let found = member_at(map, globals, base, offset, size);
+    let found = member_at(map, globals, base, wanted);
     found.or_else(|| {
         map.instances.iter().find_map(|it| {
             let members = map.structure(it.ty).map_or(&[][..], |it| &it.members);
-            let path = member_at(map, members, it.offset, offset, size)?;
+            let path = member_at(map, members, it.offset, wanted)?;
             Some(format!("{}.{path}", it.name))
         })
     })
@@ -165,17 +189,17 @@ pub(crate) fn view_at(map: &Map, (start, size): (usize, usize), offset: usize) -
     Some((found.name.clone(), base + found.offset))
 }
 
-fn member_at(map: &Map, members: &[Variable], base: usize, offset: usize, size: usize) -> Option<String> {
+fn member_at(map: &Map, members: &[Variable], base: usize, wanted: Wanted) -> Option<String> {
     members.iter().find_map(|it| {
-        let way = way_to(map, it.ty, base + it.offset, offset, size)?;
+        let way = way_to(map, it.ty, base + it.offset, wanted)?;
         Some(format!("{}{way}", it.name))
     })
 }
 
-/// The way from a variable at `start` to its part at `offset`.
-fn way_to(map: &Map, ty: Type, start: usize, offset: usize, size: usize) -> Option<String> {
-    let length = map.size_of(ty);
-    if (start, length) == (offset, size) {
+/// The way from a variable at `start` to its part that is wanted.
+fn way_to(map: &Map, ty: Type, start: usize, wanted: Wanted) -> Option<String> {
+    let (length, offset) = (map.size_of(ty), wanted.offset);
+    if (start, length) == (offset, wanted.size) && wanted.ty.is_none_or(|it| it == ty) {
         return Some(String::new());
     }
     if offset < start || start + length <= offset {
@@ -183,11 +207,11 @@ fn way_to(map: &Map, ty: Type, start: usize, offset: usize, size: usize) -> Opti
     }
     if let Some(array) = map.array(ty) {
         let position = (offset - start).checked_div(array.stride)?;
-        let way = way_to(map, array.element, start + position * array.stride, offset, size)?;
+        let way = way_to(map, array.element, start + position * array.stride, wanted)?;
         let index = array.low.checked_add_unsigned(u64::try_from(position).ok()?)?;
         return Some(format!("[{index}]{way}"));
     }
-    let path = member_at(map, &map.structure(ty)?.members, start, offset, size)?;
+    let path = member_at(map, &map.structure(ty)?.members, start, wanted)?;
     Some(format!(".{path}"))
 }
 
@@ -280,6 +304,15 @@ fn follow(map: &Map, mut place: Place, steps: &[Step<'_>]) -> Result<Place, Stri
         };
     }
     Ok(place)
+}
+
+/// The part of a variable of type `ty` that a path leads to: `.a[3]`. Its offset is from the variable.
+///
+/// The error is a sentence without a full stop.
+pub fn part(map: &Map, ty: Type, path: &str) -> Result<Place, String> {
+    let text = format!("variable{path}");
+    let steps = steps(&text).ok_or_else(|| format!("`{path}` does not lead to a part of a variable"))?;
+    follow(map, Place::of_type(ty), &steps[1..])
 }
 
 fn member(map: &Map, place: Place, name: &str) -> Result<Place, String> {

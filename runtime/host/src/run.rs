@@ -240,9 +240,13 @@ impl Runner<'_> {
             return self.real_scan(subject, number, due, placed.is_some());
         }
         self.stimulate(number, due)?;
+        if self.options.debugged {
+            self.machine.scan_begins(number, due);
+        }
         let ran = self.programs(number, due, placed.is_some());
         self.after(subject, number, due, ran)?;
-        Ok(Some(due))
+        let ends = self.options.debugged && self.machine.ends();
+        Ok((!ends).then_some(due))
     }
 
     /// In real time, one program runs at a time: its scan sees when it really begins.
@@ -346,6 +350,7 @@ impl Runner<'_> {
         let is_shown = trace.is_some() || self.options.has_table() || from.is_some() || to.is_some();
         let is_kept = self.real.is_some() || self.retention.is_some();
         let has_input = !self.stimulus.rows.is_empty();
+        let is_kept = is_kept || self.options.debugged;
         self.schedule.only().filter(|_| !is_shown && !is_kept && !has_input && !self.messages.is_there)
     }
 

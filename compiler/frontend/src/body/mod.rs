@@ -184,6 +184,7 @@ fn check_body<'s>(
     let mut checker = Checker::of_body(decl, slot, &signature);
     checker.instance = is_generic.then_some(slot);
     checker.is_covered = checker.decl.is_covered(slot) && !checker.is_suite();
+    checker.has_stops = checker.decl.has_stops(slot);
     checker.initial_outputs(&signature);
     if pou.kind != ast::PouKind::Action {
         checker.own_enable(&signature, (pou.kind, pou.name.span), statements);

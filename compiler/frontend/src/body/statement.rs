@@ -49,9 +49,13 @@ impl<'s> Checker<'_, 's> {
         // Nobody wrote it.
         let covered = self.is_covered;
         let is_own = matches!(statement.kind, Ast_::If { .. }) || span.start < span.end;
-        self.is_covered &= is_own && !is_once(statement) && !runs_suites(statement);
+        let is_own = is_own && !is_once(statement) && !runs_suites(statement);
+        self.is_covered &= is_own;
         if !matches!(statement.kind, Ast_::Empty | Ast_::Label(_) | Ast_::Error) {
             self.count_statement(span);
+            if self.has_stops && is_own {
+                self.stop_before(span);
+            }
         }
         self.statement_from = self.is_reordered.then_some(self.block.len());
         let made = match &statement.kind {

@@ -60,6 +60,8 @@ pub(crate) struct Checker<'d, 's> {
     pub late: Option<LateTarget<'s>>,
     /// What is executed of the body is counted.
     pub is_covered: bool,
+    /// A run can stop before its statements.
+    pub has_stops: bool,
     /// Where the BOOLs are written that are counted, by what they have of that in the IR.
     pub written: FxHashMap<(Location, Role), Span>,
     /// The structure whose members' declarations are followed: THIS means it there.
@@ -115,6 +117,7 @@ impl<'d, 's> Checker<'d, 's> {
             may_not_run: false,
             late: None,
             is_covered: false,
+            has_stops: false,
             written: FxHashMap::default(),
             this_structure: None,
             compared: Vec::new(),

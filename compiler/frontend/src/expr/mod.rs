@@ -65,6 +65,7 @@ mod retained;
 pub(crate) mod s7_function;
 mod standard;
 pub(crate) mod start;
+mod stops;
 mod string_compare;
 mod strucpp;
 mod system_use;

@@ -544,6 +544,11 @@ impl<'s> Names<'s> {
         own.into_iter().map(|it| it.1).collect()
     }
 
+    /// All of a file is read as if it were at a place of another one.
+    pub fn read_as_at(&mut self, file: u16, place: Span) {
+        self.regions.read_as_at(file, place);
+    }
+
     /// What a USING directive in a region names; false if the namespace does not exist or is not visible.
     pub fn use_space(&mut self, region: RegionId, site: Site, path: &[ast::Name<'_>]) -> bool {
         let space = self.space_at(site, path).filter(|it| self.hidden(site, *it).is_none());

@@ -58,6 +58,13 @@ impl Regions {
         self.files.len()
     }
 
+    /// All of a file is read as if it were at a place of another one.
+    pub fn read_as_at(&mut self, file: u16, place: Span) {
+        if let (Some(region), Some(changes)) = (self.at(place), self.files.get_mut(usize::from(file))) {
+            *changes = vec![(0, region)];
+        }
+    }
+
     pub fn use_in(&mut self, region: RegionId, space: SpaceId) {
         let uses = &mut self.all[region.0].uses;
         if !uses.contains(&space) {

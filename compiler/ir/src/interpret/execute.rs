@@ -1,6 +1,6 @@
 //! Statements: branches, writes and calls.
 
-use super::{Frame, Interpreter, Stop};
+use super::{Frame, Interpreter, Stop, Watch};
 use crate::evaluate::{scalar, text};
 use crate::layout::usize_of;
 use crate::{
@@ -17,7 +17,7 @@ pub(super) enum Flow {
     Return,
 }
 
-impl<'p> Interpreter<'p> {
+impl<'p, W: Watch> Interpreter<'p, W> {
     pub(super) fn block(&mut self, frame: &Frame, block: &'p [Statement], cx: &Context) -> Result<Flow, Stop> {
         for statement in block {
             let flow = self.statement(frame, statement, cx)?;
@@ -37,6 +37,12 @@ impl<'p> Interpreter<'p> {
                 return self.block(frame, block, cx);
             }
             StatementKind::Case { selector, arms, otherwise } => {
+                if W::STOPS
+                    && let Some(stop) = statement.kind.as_stop()
+                {
+                    W::stop(self, &stop, statement.at, cx);
+                    return Ok(Flow::Next);
+                }
                 let block = self.arm(frame, selector, arms)?.unwrap_or(otherwise);
                 return self.block(frame, block, cx);
             }
@@ -54,8 +60,10 @@ impl<'p> Interpreter<'p> {
             StatementKind::Call { callee, instance, arguments, result } => {
                 let instance = instance.as_ref().map(|place| self.resolve(frame, place)).transpose()?;
                 let inner = self.open(frame, *callee, instance, arguments)?;
+                self.watch.enter(&inner, statement.at);
                 let ended = self.block(&inner, &self.program.routine(*callee).body, cx);
                 ended.map_err(|it| it.of_call(statement.at))?;
+                self.watch.leave(self.watch.depth().saturating_sub(1));
                 self.close(frame, &inner, result.as_ref())?;
             }
             // What is outside is not here.
@@ -84,6 +92,7 @@ impl<'p> Interpreter<'p> {
         cx: &Context,
     ) -> Result<Flow, Stop> {
         let (memory, references, has_few_turns) = (self.memory.len(), self.references.len(), self.has_few_turns);
+        let depth = self.watch.depth();
         let fault = match self.block(frame, body, cx) {
             Err(Stop::Fault(fault)) => fault,
             ended => return ended,
@@ -91,6 +100,7 @@ impl<'p> Interpreter<'p> {
         let number = fault.caught()?;
         self.memory.truncate(memory);
         self.references.truncate(references);
+        self.watch.leave(depth);
         self.has_few_turns = has_few_turns;
         let offset = self.resolve(frame, kind)?;
         Value::U8(number).write(&mut self.memory[offset..]);

@@ -1,7 +1,7 @@
 //! Accesses through references: all by the runtime's table of objects.
 
 use super::place::Scope;
-use super::{Frame, Interpreter};
+use super::{Frame, Interpreter, Watch};
 use crate::evaluate::{Storage, scalar, text};
 use crate::layout::usize_of;
 use crate::reference::{Followed, followed, view, wanted};
@@ -31,7 +31,7 @@ impl Memory for Bytes<'_> {
     }
 }
 
-impl Scope<'_> {
+impl<W: Watch> Scope<'_, W> {
     fn table(&self) -> Table<'_> {
         Table::new(&self.interpreter.table)
     }
@@ -112,7 +112,7 @@ impl Scope<'_> {
     }
 }
 
-impl Interpreter<'_> {
+impl<W: Watch> Interpreter<'_, W> {
     pub(super) fn assign_reached(&mut self, frame: &Frame, it: &Reached, value: &Expr) -> Result<(), Fault> {
         let stored = match value.ty {
             Type::String(_) => {

@@ -1,12 +1,12 @@
 //! Loops, and the turns that they take of the scan.
 
 use super::execute::{Flow, integer};
-use super::{Frame, Interpreter, Stop};
+use super::{Frame, Interpreter, Stop, Watch};
 use crate::evaluate::scalar;
 use crate::{Count, For, Location, Place, Statement, Step, Taking, Value};
 use staunch_runtime::{Context, Fault, FaultKind, ops};
 
-impl<'p> Interpreter<'p> {
+impl<'p, W: Watch> Interpreter<'p, W> {
     pub(super) fn turns(
         &mut self,
         frame: &Frame,

@@ -1,18 +1,18 @@
 //! The places of a running routine: where they are in the interpreter's memory.
 
-use super::{Frame, Interpreter};
+use super::{Frame, Interpreter, Watch};
 use crate::evaluate::{Storage, scalar, string_type};
 use crate::layout::usize_of;
 use crate::{Chars, Expr, FaultKind, FieldId, Location, Place, Projection, Root, Type, Value};
 use staunch_runtime::{Fault, ops};
 
 /// The storage that a running routine sees.
-pub(super) struct Scope<'a> {
-    pub(super) interpreter: &'a Interpreter<'a>,
+pub(super) struct Scope<'a, W> {
+    pub(super) interpreter: &'a Interpreter<'a, W>,
     pub(super) frame: &'a Frame,
 }
 
-impl Storage for Scope<'_> {
+impl<W: Watch> Storage for Scope<'_, W> {
     fn load(&self, place: &Place) -> Result<Value, Fault> {
         let repr = self.interpreter.program.repr(place.ty).expect("verified IR: an elementary place");
         if let Some(reached) = self.reached(place)? {
@@ -35,7 +35,7 @@ impl Storage for Scope<'_> {
     }
 }
 
-impl Scope<'_> {
+impl<W: Watch> Scope<'_, W> {
     /// The offset in the interpreter's memory that `place` means.
     pub(super) fn resolve(&self, place: &Place) -> Result<usize, Fault> {
         if place.is_followed() {

@@ -36,6 +36,19 @@ pub fn render(diagnostic: &Diagnostic, sources: &Sources, format: Format, style:
     text
 }
 
+/// A place of a file as diagnostics show it, below a sentence that is neither an error nor a warning. The span is one of the
+/// [file](Sources::file), and the text ends with a line break.
+pub fn excerpt(message: &str, span: Span, sources: &Sources, style: Style) -> String {
+    let mark = Mark { span, line: sources.file(span.file).line_column(span.start).0, primary: true, label: None };
+    let excerpt = Excerpt::new(sources, mark);
+    let cut = excerpt.cut;
+    let group = excerpt.add_to(Group::with_title(Level::NOTE.with_name("stopped").primary_title(message)));
+    let renderer = if style.color { Renderer::styled() } else { Renderer::plain() };
+    let text = renderer.render(&[group]);
+    let text = if cut { without_bare_marks(&text) } else { text };
+    text + "\n"
+}
+
 /// The diagnostic with its places in the files, where texts are made of pieces of them.
 fn in_files<'d>(diagnostic: &'d Diagnostic, sources: &Sources) -> Cow<'d, Diagnostic> {
     let is_assembled = |span: Span| sources.get(span.file).is_assembled();

@@ -64,6 +64,8 @@ pub struct Options {
     pub pacing: Pacing,
     /// In real time, what inputs and outputs are connected with.
     pub io: Io,
+    /// The machine is told of each scan, and may end the run.
+    pub debugged: bool,
     /// Prints nothing but errors and the trace.
     pub quiet: bool,
     /// Prints the last scans as a table, if no trace is asked for.
@@ -110,7 +112,7 @@ impl Options {
     }
 
     /// On standard output, unless the trace is written there.
-    pub(super) fn print_json(&self, object: &str) -> Result<(), Error> {
+    pub fn print_json(&self, object: &str) -> Result<(), Error> {
         let line = format!("{object}\n");
         let written = match self.trace.as_deref().is_some_and(|it| it.as_os_str() == "-") {
             true => io::stderr().write_all(line.as_bytes()),
