@@ -6,7 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 const SYNTAX: &str = "compiler/syntax/src";
-const SYNTAX_LAYERS: [&str; 8] = ["vendor", "source", "spelling", "diagnostic", "ast", "foreign", "lex", "parse"];
+const SYNTAX_LAYERS: [&str; 9] =
+    ["vendor", "source", "spelling", "diagnostic", "ast", "foreign", "lex", "parse", "format"];
 
 const ROOT: &str = "compiler/frontend/src";
 

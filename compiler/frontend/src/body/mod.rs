@@ -17,7 +17,6 @@ mod wide_step;
 
 use crate::expr::checker::Checker;
 use crate::expr::uses::Uses;
-use crate::lints::siblings;
 use crate::types::declarations::Declarations;
 use crate::{Bodies, Code, Span, ast};
 use staunch_ir::reference::escape::moves_references;
@@ -76,7 +75,7 @@ impl Checked {
         let mut made = check_body(decl, slot, body, &mut self.left_out);
         let stack = made.as_ref().map_or(0, |(routine, _)| stack::of_body(routine, &|ty| decl.size_at_most(ty)));
         if let Some((routine, _)) = &made {
-            siblings::keep(decl, slot, routine);
+            decl.keep_touched(slot, routine);
         }
         if keep == Bodies::Dropped {
             made.iter_mut()
@@ -95,7 +94,7 @@ impl Checked {
     ) {
         if let Some(routine) = decl.pous[slot].dispatch.as_deref().cloned() {
             let stack = stack::of_body(&routine, &|ty| decl.size_at_most(ty));
-            siblings::keep(decl, slot, &routine);
+            decl.keep_touched(slot, &routine);
             return self.push(Some((routine, Uses::default())), stack);
         }
         let reported = decl.log.diagnostics.len();

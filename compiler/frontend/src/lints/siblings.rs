@@ -1,19 +1,10 @@
 //! Calls within one expression of which one writes what another one reads: there the order in which operands are evaluated
 //! decides.
 
-use crate::dialect::rules::is_followed;
 use crate::types::declarations::Declarations;
-use crate::types::siblings::{Own, Touched, touched};
-use staunch_ir::{Part, Routine, RoutineId, Use};
+use crate::types::siblings::{Touched, touched};
+use staunch_ir::{Part, Use};
 use std::collections::HashMap;
-
-/// Keeps what a routine touches, where the order of calls may be another one: its body may be dropped.
-pub(crate) fn keep(declarations: &mut Declarations<'_>, slot: usize, routine: &Routine) {
-    let dialect = declarations.dialect(declarations.pous[slot].ast.name.span);
-    if !is_followed(dialect, Part::EvaluationOrder) {
-        declarations.touched.insert(RoutineId::next(slot), Own::of(&routine.body));
-    }
-}
 
 /// Notes each pair whose order decides.
 pub(crate) fn note(declarations: &mut Declarations<'_>) {

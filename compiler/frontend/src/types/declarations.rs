@@ -1,6 +1,5 @@
 //! What a program declares: what expressions and bodies are checked against.
 
-use super::siblings::{Bodies, Siblings};
 use super::address::{self, Addresses};
 use super::coverage::Coverage;
 use super::generic::{Generics, Instance};
@@ -8,11 +7,13 @@ use super::image::Image;
 use super::overloads::Overloads;
 use super::pools::Pool;
 use super::scope::{Scope, Variable};
+use super::siblings::{Bodies, Own, Siblings};
 use super::signature::Signature;
 use super::starts::Starts;
 use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
+use crate::dialect::rules::is_followed;
 use crate::dialect::{self, Dialect, missing};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
@@ -20,7 +21,8 @@ use crate::spelling::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
-    BlockId, Location, Program, RefKind, RefType, ReferenceId, Routine, Section, SourceFile, StructId, Type,
+    BlockId, Location, Part, Program, RefKind, RefType, ReferenceId, Routine, RoutineId, Section, SourceFile, StructId,
+    Type,
 };
 use staunch_runtime::Class;
 use std::collections::BTreeMap;
@@ -401,6 +403,14 @@ impl<'s> Declarations<'s> {
     pub fn home(&self, slot: usize) -> usize {
         let pou = &self.pous[slot];
         pou.ast.home.and_then(|it| self.class_named(it)).or(pou.owner).unwrap_or(slot)
+    }
+
+    /// Keeps what a routine touches, where the system of its dialect may do calls in another order: its body may be dropped.
+    pub fn keep_touched(&mut self, slot: usize, routine: &Routine) {
+        let dialect = self.dialect(self.pous[slot].ast.name.span);
+        if !is_followed(dialect, Part::EvaluationOrder) {
+            self.touched.insert(RoutineId::next(slot), Own::of(&routine.body));
+        }
     }
 
     /// The class whose declaration has a name.

@@ -18,6 +18,7 @@ pub(crate) mod overloads;
 pub(crate) mod polymorphic;
 pub(crate) mod pools;
 pub(crate) mod scope;
+pub(crate) mod siblings;
 pub(crate) mod signature;
 mod started;
 pub(crate) mod starts;
