@@ -2,8 +2,8 @@
 
 use super::indent::{Indenter, Layout};
 use super::lines::gap;
-use super::print::word;
 use super::roles::Role;
+use super::words::word;
 use crate::lex::Kind;
 use core::ops::Range;
 

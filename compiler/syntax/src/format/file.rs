@@ -1,6 +1,7 @@
 //! Whole files: their encoding stays, and of TwinCAT's the XML around the text.
 
-use super::{Style, part, whole};
+use super::style::Style;
+use super::text::{part, whole};
 use crate::source::Source;
 use crate::vendor;
 

@@ -1,8 +1,8 @@
 //! How far each line stands to the right: by the blocks and brackets that are open where it starts.
 
-use super::Style;
 use super::blocks::{Block, Blocks, Pair};
 use super::roles::Role;
+use super::style::Style;
 use super::token::Token;
 use crate::lex::Kind;
 
