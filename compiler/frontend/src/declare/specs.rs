@@ -194,7 +194,10 @@ impl<'s> Declarations<'s> {
             // A refused value has been reported; the type is known anyway.
             let is_flat = self.has_flat_rows(&decl.ty, initial);
             let value = if is_flat { None } else { self.initial(initial, &resolved, scope) };
-            if !self.leaves_out(decl, initial, resolved.ty, within) {
+            let is_left_out = self.leaves_out(initial, resolved.ty, within);
+            if is_left_out && (value.is_some() || is_flat) {
+                self.report_left_out(decl, initial);
+            } else if !is_left_out {
                 resolved.initial = value.unwrap_or(resolved.initial);
             }
         }
@@ -202,8 +205,8 @@ impl<'s> Declarations<'s> {
         Some(resolved)
     }
 
-    /// Whether the system does not apply the initial value of an array, which is reported.
-    fn leaves_out(&mut self, decl: &ast::VarDecl<'s>, initial: &ast::Initial<'s>, ty: Type, within: Within) -> bool {
+    /// Whether the system does not apply an initial value.
+    fn leaves_out(&self, initial: &ast::Initial<'s>, ty: Type, within: Within) -> bool {
         let is_computed = matches!(&initial.kind, ast::InitialKind::Value(it) if !is_plain(it));
         let is_left_out = match within {
             Within::Pou => false,
@@ -212,9 +215,11 @@ impl<'s> Declarations<'s> {
                 matches!(ty, Type::Array(_)) || is_computed && matches!(ty, Type::Elementary(_))
             }
         };
-        let is_left_out =
-            is_left_out && self.dialect(initial.span).rules().initial_values.choice == InitialValues::OfStrucpp;
-        if let (true, Some(name)) = (is_left_out, decl.names.first()) {
+        is_left_out && self.dialect(initial.span).rules().initial_values.choice == InitialValues::OfStrucpp
+    }
+
+    fn report_left_out(&mut self, decl: &ast::VarDecl<'s>, initial: &ast::Initial<'s>) {
+        if let Some(name) = decl.names.first() {
             self.report(
                 Diagnostic::new(
                     Code::W0415,
@@ -225,7 +230,6 @@ impl<'s> Declarations<'s> {
                 .help("assign it in the first scan, or declare it in a FUNCTION_BLOCK"),
             );
         }
-        is_left_out
     }
 
     /// Refuses an initial value with which all of them would hold too many constants: a structure

@@ -191,16 +191,14 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_matiec(Use::Part(Part::InOutOfFunctionCopied), COPIED),
     of_matiec(Use::Part(Part::InputReadInCall), ONE_BY_ONE),
     of_strucpp(Use::Part(Part::InputReadInCall), ONE_BY_ONE),
-    of_strucpp(
-        Use::Part(Part::TargetChanged),
-        "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`",
-    )
-    .told(),
-    of_matiec(
-        Use::Part(Part::TargetChanged),
-        "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`",
-    )
-    .told(),
+    of_strucpp(Use::Part(Part::TargetChanged), LOOKED_UP_AFTER).told(),
+    NotFollowed {
+        dialect: Dialect::Openplc,
+        what: LOOKED_UP_AFTER,
+        evidence: "beremiz/matiec 6bb2c33: the C that it writes",
+        uses: Use::Part(Part::TargetChanged),
+        is_told: true,
+    },
     of_strucpp(
         Use::Part(Part::TimeByReal),
         "in an expression it is a double until it is stored: with `t` of 10 ms, `t / 3.0 * 3.0 = t` is TRUE",
@@ -231,6 +229,8 @@ const OVERFLOWN_CPP: &str = "C++ leaves it undefined, and the compiler and the p
 
 const COPIED: &str =
     "it is copied in before the call and back after it, each by itself: what the body writes to one shows in no other";
+
+const LOOKED_UP_AFTER: &str = "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`";
 
 const ONE_BY_ONE: &str = "inputs are assigned one by one: in `x(a := 5, b := x.a)`, `b` is 5";
 
