@@ -15,6 +15,10 @@ p := (p + 1) MOD 8; Next := p;
 END_METHOD
 o := a + b; p := a;
 END_FUNCTION_BLOCK
+FUNCTION Bump : INT
+VAR_IN_OUT g : INT; END_VAR
+g := (g + 1) MOD 2; Bump := g;
+END_FUNCTION
 FUNCTION_BLOCK Inout
 VAR_INPUT a : INT; END_VAR
 VAR_IN_OUT v : INT; END_VAR
@@ -41,7 +45,7 @@ fn program(body: &str) -> String {
         "{POUS}{both}PROGRAM p
 VAR_INPUT n : INT(0..3); on : BOOL; END_VAR
 VAR_OUTPUT q : INT; END_VAR
-VAR x : Two; y : Inout; c : CTU; d : TON; i, j : INT; t : ARRAY[0..9] OF INT; s : STRING; END_VAR
+VAR x : Two; y : Inout; c : CTU; d : TON; i, j : INT; t : ARRAY[0..9] OF INT; m : ARRAY[0..1, 0..1] OF INT; s : STRING; END_VAR
 {body}
 END_PROGRAM
 "
@@ -75,6 +79,8 @@ fn what_a_call_is_on_openplc_is_not_equal() {
         ("compared", "openplc4", "IF x.Next() > x.Next() THEN q := n; END_IF;", right_first),
         ("arguments", "openplc4", "q := y.M(x.Next(), x.Next());", right_first),
         ("chosen", "openplc4", "q := MAX(x.Next(), 7 - x.Next());", right_first),
+        ("later_argument", "openplc4", "i := n; q := MAX(Bump(i), i);", right_first),
+        ("indices", "openplc4", "i := 0; m[Bump(i), i] := 7; q := m[1, 1];", right_first),
         ("index", "openplc4", "t[x.Next()] := x.Next(); q := t[1];", right_first),
         (
             "time",

@@ -150,7 +150,7 @@ impl<'s> Checker<'_, 's> {
             None => this.given_value(expr, ty),
         })?;
         if is_unordered {
-            self.note_siblings(mark);
+            self.note_siblings(mark, Some(&value));
             if before.iter().any(|it| self.held_changes(&self.block[mark..], &it.held)) {
                 self.note_use(staunch_ir::Use::Part(staunch_ir::Part::EvaluationOrder), expr.span);
             }

@@ -2,12 +2,11 @@
 
 use super::checker::{Checker, Context};
 use super::operand::Operand;
-use super::order::Held;
 use super::place::Found;
 use super::unresolved::not_constant;
 use crate::diagnostic::wording::article;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::{Expr, ExprKind, Part, Place, StatementKind, Type, Use};
+use staunch_ir::{Expr, ExprKind, Place, StatementKind, Type};
 
 impl<'s> Checker<'_, 's> {
     /// `(a := b)`, of CODESYS: what `a` is given, where it is written.
@@ -99,7 +98,7 @@ impl<'s> Checker<'_, 's> {
         let writable = self.writable(&found, target.span);
         let (ty, view) = (self.type_of(&found), found.view);
         let mut place = found.place;
-        let (mark, written) = (self.block.len(), Held::Place(place.clone()));
+        let (mark, written) = (self.block.len(), self.kept_order(&place));
         let mut given = self.after_place(&mut place, |this| {
             if rest.is_empty() {
                 return this.value_or_heir(value, ty);
@@ -107,10 +106,8 @@ impl<'s> Checker<'_, 's> {
             let right = this.assigned(rest, value, span, true)?;
             this.coerce(Operand::Typed(right.read()), ty, value.span)
         })?;
-        self.note_siblings(mark);
-        if self.statement_from.is_some() && self.held_changes(&self.block[mark..], &written) {
-            self.note_use(Use::Part(Part::EvaluationOrder), span);
-        }
+        self.note_siblings(mark, Some(&given));
+        self.note_reordered(mark, written.as_ref(), span);
         if is_read && given.as_const().is_none() {
             self.save("assigned", &mut given);
         } else {

@@ -10,7 +10,7 @@ use crate::types::signature::pin_place;
 use crate::{Span, ast};
 use ast::ArgumentKind;
 use staunch_ir::{
-    Argument, Expr, Location, Part, Place, RoutineId, Section, Statement, StatementKind, Type, Use, visit,
+    Argument, Expr, Location, Part, Place, Root, RoutineId, Section, Statement, StatementKind, Type, Use, alias, visit,
 };
 
 impl<'s> Checker<'_, 's> {
@@ -44,14 +44,35 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Calls of an operand, which its statements from `mark` on have, beside those of the operands before it.
-    pub(crate) fn note_siblings(&mut self, mark: usize) {
+    /// Calls of an operand, which its statements from `mark` on have, and what it reads, beside the calls of the operands before it.
+    pub(crate) fn note_siblings(&mut self, mark: usize, value: Option<&Expr>) {
         let Some(from) = self.statement_from.filter(|it| *it < mark) else { return };
         let (first, second) = (Calls::of(&self.block[from..mark]), Calls::of(&self.block[mark..]));
-        let Some(at) = second.at.filter(|_| !first.callees.is_empty()) else { return };
+        let Some(at) = second.at.or(value.map(|it| it.at)).filter(|_| !first.callees.is_empty()) else { return };
         let share = first.given.iter().any(|it| self.changed_by(&self.block[mark..], it))
             || second.given.iter().any(|it| self.changed_by(&self.block[from..mark], it));
-        self.decl.siblings.push(Siblings { first: first.callees, second: second.callees, share, at });
+        let reads = value.map_or([false; 2], |it| self.reads_of(it, &first.given));
+        self.decl.siblings.push(Siblings { first: first.callees, second: second.callees, reads, share, at });
+    }
+
+    /// Whether a value depends on what calls were given, and on what all can reach.
+    fn reads_of(&self, value: &Expr, given: &[Place]) -> [bool; 2] {
+        let frame = self.frame();
+        let mut shared = false;
+        visit::reads(value, &mut |it| shared |= matches!(it.root, Root::Globals) || it.is_followed());
+        [given.iter().any(|it| alias::reads(&frame, value, it)), shared]
+    }
+
+    /// A place that is written before an operand, where the order matters.
+    pub(crate) fn kept_order(&self, place: &Place) -> Option<Held> {
+        self.statement_from.map(|_| Held::Place(place.clone()))
+    }
+
+    /// What is written before an operand, and what the operand changes, whose statements are those from `mark` on.
+    pub(crate) fn note_reordered(&mut self, mark: usize, before: Option<&Held>, span: Span) {
+        if before.is_some_and(|it| self.held_changes(&self.block[mark..], it)) {
+            self.note_use(Use::Part(Part::EvaluationOrder), span);
+        }
     }
 
     fn changed_by(&self, block: &[Statement], place: &Place) -> bool {

@@ -58,11 +58,11 @@ impl<'s> Checker<'_, 's> {
         let ty = Type::Elementary(from);
         if self.has_functions_of_strucpp(value.span) {
             // All of STruC++'s are templates, which take a number at the type that it was computed at, whatever their names say.
-            let is_number =
-                |it: Elementary| it != Elementary::Bool && (it.is_real() || it.is_integer() || it.is_bits());
+            let is_number = |it: Elementary| it.is_real() || it.is_integer() || it.is_bits();
+            let is_given = |it: Elementary| it != Elementary::Bool && is_number(it);
             return match self.operand(value, Some(ty))? {
                 Operand::Typed(given) | Operand::Promoted(given, _)
-                    if is_number(from) && given.ty.elementary().is_some_and(is_number) =>
+                    if is_number(from) && given.ty.elementary().is_some_and(is_given) =>
                 {
                     Some(given)
                 }

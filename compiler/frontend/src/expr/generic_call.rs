@@ -62,7 +62,7 @@ impl<'s> Checker<'_, 's> {
         let operand = self.after_parts(&mut parts.written, |this| {
             this.taken(Takes::Common(hint), expr, formal.name.text, called.name)
         })?;
-        self.note_siblings(mark);
+        self.note_siblings(mark, operand.typed());
         let location = self.at(expr.span);
         // A number that has no type yet is one that nothing changes.
         let value = operand.typed().cloned().unwrap_or_else(|| staunch_ir::Expr::bool(false, location));

@@ -51,7 +51,7 @@ impl<'s> Checker<'_, 's> {
         let right_hint = beside(&a, hint).or_else(|| self.bits_of_side(a.ty(), right, op));
         let mark = self.block.len();
         let b = self.after(a.typed_mut().as_mut_slice(), |this| this.operand(right, right_hint))?;
-        self.note_siblings(mark);
+        self.note_siblings(mark, b.typed());
         // A bare enumerator on the left listens to the right side.
         if let (Some(Type::Enum(x)), Some(Type::Enum(y))) = (a.ty(), b.ty())
             && x != y

@@ -139,7 +139,7 @@ impl<'s> Checker<'_, 's> {
     fn cuts_counts(&self, signature: &Signature, span: Span) -> bool {
         let rules = self.decl.dialect(span).rules();
         match rules.narrow_integers.choice {
-            NarrowIntegers::At32Bits => signature.class == Class::String && !rules.ranks_numbers(),
+            NarrowIntegers::At32Bits => takes_text(signature) && !rules.ranks_numbers(),
             NarrowIntegers::AsCPromotes => true,
             NarrowIntegers::AtTheirType | NarrowIntegers::MixedAsCPromotes => false,
         }
@@ -223,7 +223,7 @@ impl<'s> Checker<'_, 's> {
                 this.late_target_if(|it| it.is_before(next))?;
                 evaluate(this, *at, side)
             });
-            self.note_siblings(mark);
+            self.note_siblings(mark, evaluated.as_ref().and_then(Operand::typed));
             match evaluated {
                 Some(operand) => written.push(operand),
                 None => complete = false,
@@ -486,6 +486,10 @@ impl<'s> Checker<'_, 's> {
         self.report(Diagnostic::new(Code::E0201, value.span, message).label(format!("expected {wanted}")));
         None
     }
+}
+
+fn takes_text(signature: &Signature) -> bool {
+    signature.parameters.iter().any(|it| matches!(it.kind, Kind::String | Kind::Wstring | Kind::AnyString))
 }
 
 /// What the parameter at a position takes; those past the last are as the last.

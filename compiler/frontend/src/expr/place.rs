@@ -591,7 +591,10 @@ impl<'s> Checker<'_, 's> {
             };
             let Found { place, access, view } = found;
             let mut place = place;
+            let (mark, written) = (self.block.len(), self.kept_order(&place));
             let index_value = self.after_place(&mut place, |this| this.index_value(index, id))?;
+            self.note_siblings(mark, Some(&index_value));
+            self.note_reordered(mark, written.as_ref(), index.span);
             let at = self.at(index.span);
             if view.is_some() {
                 found = self.element_of_view(Found { place, view, access }, id, index_value, at);

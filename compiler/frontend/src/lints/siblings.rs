@@ -16,7 +16,9 @@ pub(crate) fn note(declarations: &mut Declarations<'_>) {
             ids.iter().for_each(|id| all.add(touched(&bodies, *id, &mut known)));
             all
         });
-        if first.shared.meets(second.shared) || it.share && first.given.meets(second.given) {
+        let read = Touched::reading(it.reads);
+        let is_read = first.shared.meets(read.shared) || first.given.meets(read.given);
+        if is_read || first.shared.meets(second.shared) || it.share && first.given.meets(second.given) {
             declarations.program.uses.note(Use::Part(Part::EvaluationOrder), it.at);
         }
     }

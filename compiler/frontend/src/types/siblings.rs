@@ -9,6 +9,8 @@ use std::collections::HashMap;
 pub(crate) struct Siblings {
     pub first: Vec<RoutineId>,
     pub second: Vec<RoutineId>,
+    /// What the second operand reads besides: of what the first calls are given, and of what all can reach.
+    pub reads: [bool; 2],
     /// Some of both are given one variable or instance.
     pub share: bool,
     pub at: Location,
@@ -27,6 +29,13 @@ pub(crate) struct Touched {
 pub(crate) struct Uses {
     reads: bool,
     writes: bool,
+}
+
+impl Touched {
+    pub fn reading([given, shared]: [bool; 2]) -> Self {
+        let reads = |reads| Uses { reads, writes: false };
+        Self { given: reads(given), shared: reads(shared) }
+    }
 }
 
 impl Uses {

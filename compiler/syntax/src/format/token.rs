@@ -57,7 +57,7 @@ pub fn read(text: &str) -> Vec<Token<'_>> {
         if token.is_member && token.kind.keyword().is_some() {
             token.kind = Kind::Name;
         }
-        if (tokens.is_empty() || token.breaks > 0) && takes_line(&token, lexer.remainder()) {
+        if (token.breaks > 0 || tokens.last().is_none_or(ends_line)) && takes_line(&token, lexer.remainder()) {
             let name = lexer.remainder().lines().next().unwrap_or_default();
             lexer.bump(name.len());
             token.text = text[place.start..lexer.span().end].trim_end();
@@ -81,6 +81,12 @@ pub fn read(text: &str) -> Vec<Token<'_>> {
         end = lexer.span().end;
     }
     tokens
+}
+
+/// Whether a statement may begin after a token, which then has a line of its own.
+fn ends_line(token: &Token<'_>) -> bool {
+    let kinds = [Kind::Semicolon, Kind::Colon, Kind::Then, Kind::Do, Kind::Else, Kind::Of, Kind::Repeat];
+    kinds.contains(&token.kind) || token.text.get(..4).is_some_and(|it| it.eq_ignore_ascii_case("END_"))
 }
 
 /// Whether any text may follow up to the end of the line: `REGION Pumps & valves`, `TITLE = What it's for` of SCL.
