@@ -1,11 +1,12 @@
 //! Texts: STRING and WSTRING, their functions, and their characters.
 
+use crate::expressions::in_repr;
 use crate::functions::positions;
 use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::places::Character;
 use crate::storage::{Cell, Place, Value, integer_cell};
 use crate::types::{Elementary, Text, Type};
-use staunch_frontend::ast::{Argument, Chars};
+use staunch_frontend::ast::{Argument, Chars, Expr};
 use staunch_runtime::{FaultKind, Value as Scalar};
 
 /// Bytes, or code units.
@@ -122,7 +123,7 @@ impl<'a> Machine<'a> {
         let mut values: Vec<(usize, Value<'a>)> = Vec::new();
         for (position, expr) in given {
             let counts = names.get(position).is_some_and(|it| matches!(*it, "L" | "P"));
-            let value = if counts { self.value_as(frame, expr, &Type::LINT)? } else { self.value(frame, expr, None)? };
+            let value = if counts { self.count_of_text(frame, expr)? } else { self.value(frame, expr, None)? };
             values.push((position, value));
         }
         values.sort_by_key(|it| it.0);
@@ -153,6 +154,16 @@ impl<'a> Machine<'a> {
             }
         };
         Ok(Value::text(made, values[0].1.is_wide()))
+    }
+
+    /// A count or a position. In CODESYS these functions are a library's: what is computed at 32 bits is passed at its own type.
+    fn count_of_text(&mut self, frame: &Frame<'a>, expr: &'a Expr<'a>) -> Outcome<Value<'a>> {
+        let value = self.value(frame, expr, Some(&Type::LINT))?;
+        let passed = match value.ty.elementary().filter(|it| self.is_codesys() && self.promotes(*it)) {
+            Some(own) => in_repr(value.as_scalar()?, own),
+            None => value,
+        };
+        self.converted(passed, &Type::LINT, expr.span)
     }
 
     /// To and from texts and characters; `None` for another conversion.
