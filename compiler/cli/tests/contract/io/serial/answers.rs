@@ -28,7 +28,7 @@ fn serve(line: &mut Line, reply: &Reply) {
     let mut request: Vec<u8> = Vec::new();
     until("the program asks", || {
         request.extend(line.receive());
-        request.len() >= 8 && request.len() % 8 == 0
+        request.len() >= 8 && request.len().is_multiple_of(8)
     });
     // The program has asked again, if the test was late.
     assert!(request.chunks(8).all(|it| it == framed(&[3, 4, 0, 3, 0, 1])), "{request:?}");
