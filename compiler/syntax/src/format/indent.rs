@@ -154,57 +154,65 @@ impl<'t, 's> Indenter<'t, 's> {
 
     /// Goes past a token.
     pub fn pass(&mut self, at: usize) {
-        let token = &self.layout.tokens[at];
-        if token.is_aside() {
+        if self.layout.tokens[at].is_aside() {
             return;
         }
-        if let Some(pair) = self.layout.blocks.closed(at) {
-            let found = self.open.iter().rposition(|it| it.pair.open == pair.open);
-            self.open.truncate(found.unwrap_or(self.open.len()));
-            (self.starts, self.is_head, self.is_line_head) = (true, false, false);
-            self.brackets.clear();
-            self.before = Some(at);
-            return;
+        match self.layout.blocks.closed(at) {
+            Some(pair) => self.close(*pair),
+            None => self.pass_inner(at),
         }
+        self.before = Some(at);
+    }
+
+    fn close(&mut self, pair: Pair) {
+        let found = self.open.iter().rposition(|it| it.pair.open == pair.open);
+        self.open.truncate(found.unwrap_or(self.open.len()));
+        self.brackets.clear();
+        self.end_head();
+    }
+
+    /// A token that closes no block.
+    fn pass_inner(&mut self, at: usize) {
+        let kind = self.layout.tokens[at].kind;
         if self.starts {
             self.statement = self.line;
-            self.is_head = is_head(token.kind);
+            self.is_head = is_head(kind);
         }
         let was_start = std::mem::take(&mut self.starts);
-        match token.kind {
+        match kind {
             Kind::OpenParen | Kind::OpenBracket => self.brackets.push(self.line),
             Kind::CloseParen | Kind::CloseBracket => drop(self.brackets.pop()),
-            Kind::Semicolon => {
-                self.brackets.clear();
-                self.end_head();
-            }
-            Kind::Then | Kind::Do if self.is_head => self.end_head(),
-            Kind::Else | Kind::Finally if was_start => {
-                self.end_head();
-                self.open.last_mut().into_iter().for_each(|it| it.is_labelled = false);
-            }
-            Kind::Of => {
-                if let Some(open) = self.open.last_mut().filter(|it| it.pair.block == Block::Case && !it.has_body) {
-                    open.has_body = true;
-                    self.end_head();
-                }
-            }
+            Kind::Semicolon => self.brackets.clear(),
             Kind::Catch => self.is_line_head = true,
-            _ if self.layout.roles[at] == Role::LabelEnd => {
-                self.end_head();
-                if let Some(open) = self.open.last_mut().filter(|it| it.pair.block == Block::Case) {
-                    open.is_labelled = true;
-                }
-            }
-            _ if self.is_qualifier(at) => self.end_head(),
-            _ if was_start && token.is_word("BEGIN") => self.end_head(),
             _ => {}
+        }
+        if self.ends_head(at, was_start) {
+            self.end_head();
         }
         if let Some(pair) = self.layout.blocks.opened(at) {
             self.open(*pair);
         }
         self.is_line_head |= was_start && self.layout.blocks.is_head(at);
-        self.before = Some(at);
+    }
+
+    /// Whether a statement may start after a token; notes what that says of a CASE.
+    fn ends_head(&mut self, at: usize, was_start: bool) -> bool {
+        let token = &self.layout.tokens[at];
+        let case = self.open.last_mut().filter(|it| it.pair.block == Block::Case);
+        match token.kind {
+            Kind::Semicolon => true,
+            Kind::Then | Kind::Do => self.is_head,
+            Kind::Else | Kind::Finally if was_start => {
+                case.into_iter().for_each(|it| it.is_labelled = false);
+                true
+            }
+            Kind::Of => case.is_some_and(|it| !std::mem::replace(&mut it.has_body, true)),
+            _ if self.layout.roles[at] == Role::LabelEnd => {
+                case.into_iter().for_each(|it| it.is_labelled = true);
+                true
+            }
+            _ => self.is_qualifier(at) || was_start && token.is_word("BEGIN"),
+        }
     }
 
     fn end_head(&mut self) {

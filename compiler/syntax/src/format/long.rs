@@ -16,7 +16,8 @@ pub fn shorten(layout: Layout<'_, '_>, breaks: &mut [u8]) {
         let level = indenter.start_line(start);
         let mut line = start..end_of_line(breaks, start);
         let indent = level * layout.style.indent.width();
-        while indent + length(layout, line.clone()) > layout.style.width {
+        // Deeper brackets have no room on any line.
+        while indent < layout.style.width && indent + length(layout, line.clone()) > layout.style.width {
             let places = places(layout, line.clone(), indenter.is_in_brackets(), indent);
             if places.is_empty() {
                 break;

@@ -24,55 +24,95 @@ pub enum Role {
 
 /// The role of each token.
 pub fn roles(tokens: &[Token<'_>], blocks: &Blocks) -> Vec<Role> {
-    let mut roles = vec![Role::Plain; tokens.len()];
-    let mut inside: Vec<Pair> = Vec::new();
-    let (mut before, mut second) = (None::<usize>, None::<usize>);
-    let (mut starts, mut is_in_head) = (true, false);
-    for at in 0..tokens.len() {
-        let token = &tokens[at];
-        if token.is_aside() {
-            continue;
+    let roles = vec![Role::Plain; tokens.len()];
+    let mut reader = Reader {
+        tokens,
+        blocks,
+        roles,
+        inside: Vec::new(),
+        before: None,
+        second: None,
+        starts: true,
+        is_in_head: false,
+    };
+    (0..tokens.len()).filter(|it| !tokens[*it].is_aside()).for_each(|it| reader.read(it));
+    reader.roles
+}
+
+/// Reads tokens one after the other, but for comments.
+struct Reader<'t, 's> {
+    tokens: &'t [Token<'s>],
+    blocks: &'t Blocks,
+    roles: Vec<Role>,
+    /// The blocks that are open.
+    inside: Vec<Pair>,
+    /// The last token, and the one before it.
+    before: Option<usize>,
+    second: Option<usize>,
+    /// A statement may start here.
+    starts: bool,
+    /// In the line of the first word of a POU.
+    is_in_head: bool,
+}
+
+impl Reader<'_, '_> {
+    fn read(&mut self, at: usize) {
+        if self.blocks.closed(at).is_some() {
+            self.inside.pop();
         }
-        if blocks.closed(at).is_some() {
-            inside.pop();
+        let is_pou = self.blocks.is_head(at) || self.blocks.opened(at).is_some_and(|it| it.block == Block::Pou);
+        self.is_in_head = is_pou || self.is_in_head && self.tokens[at].breaks == 0;
+        if self.starts {
+            self.label(at);
         }
-        let is_pou = blocks.is_head(at) || blocks.opened(at).is_some_and(|it| it.block == Block::Pou);
-        is_in_head = is_pou || is_in_head && token.breaks == 0;
-        let block = inside.last().map(|it| it.block);
-        if starts
-            && !matches!(block, Some(Block::Declarations | Block::Type))
-            && let Some(end) = label(tokens, at, block == Some(Block::Case))
-        {
-            roles[at] = Role::Label;
-            roles[end] = Role::LabelEnd;
-        }
-        match token.kind {
-            Kind::Minus | Kind::Plus if before.is_none_or(|it| begins_operand(&tokens[it])) => roles[at] = Role::Unary,
-            Kind::And | Kind::Or | Kind::Xor | Kind::Mod if before.is_none_or(|it| begins_operand(&tokens[it])) => {
-                roles[at] = Role::Function;
-            }
-            Kind::Equal if !token.is_apart && is_bound(tokens, before, second) => roles[at] = Role::Glued,
-            Kind::Name => {
-                let declares = is_in_head || matches!(block, Some(Block::Declarations | Block::Type));
-                let before = before.map(|it| tokens[it].kind);
-                if declares && (is_type(token, before) || is_word(token, tokens.get(at + 1), is_in_head)) {
-                    roles[at] = Role::Word;
-                }
-            }
-            _ => {}
-        }
-        starts = roles[at] == Role::LabelEnd
-            || matches!(
-                token.kind,
-                Kind::Semicolon | Kind::Then | Kind::Do | Kind::Else | Kind::Of | Kind::Repeat | Kind::Try
-            )
-            || blocks.closed(at).is_some();
-        if let Some(pair) = blocks.opened(at) {
-            inside.push(*pair);
-        }
-        (second, before) = (before, Some(at));
+        self.roles[at] = self.role(at).unwrap_or(self.roles[at]);
+        self.starts = self.roles[at] == Role::LabelEnd
+            || ends_statement(self.tokens[at].kind)
+            || self.blocks.closed(at).is_some();
+        self.inside.extend(self.blocks.opened(at));
+        (self.second, self.before) = (self.before, Some(at));
     }
-    roles
+
+    fn block(&self) -> Option<Block> {
+        self.inside.last().map(|it| it.block)
+    }
+
+    fn is_in_declarations(&self) -> bool {
+        matches!(self.block(), Some(Block::Declarations | Block::Type))
+    }
+
+    /// Marks the label that starts here, if one does.
+    fn label(&mut self, at: usize) {
+        if self.is_in_declarations() {
+            return;
+        }
+        if let Some(end) = label(self.tokens, at, self.block() == Some(Block::Case)) {
+            self.roles[at] = Role::Label;
+            self.roles[end] = Role::LabelEnd;
+        }
+    }
+
+    /// What a token is besides a label.
+    fn role(&self, at: usize) -> Option<Role> {
+        let token = &self.tokens[at];
+        let is_first = || self.before.is_none_or(|it| begins_operand(&self.tokens[it]));
+        match token.kind {
+            Kind::Minus | Kind::Plus if is_first() => Some(Role::Unary),
+            Kind::And | Kind::Or | Kind::Xor | Kind::Mod if is_first() => Some(Role::Function),
+            Kind::Equal if !token.is_apart && is_bound(self.tokens, self.before, self.second) => Some(Role::Glued),
+            Kind::Name if self.is_in_head || self.is_in_declarations() => {
+                let before = self.before.map(|it| self.tokens[it].kind);
+                let is_word = is_type(token, before) || is_word(token, self.tokens.get(at + 1), self.is_in_head);
+                is_word.then_some(Role::Word)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether a statement may start after a token.
+fn ends_statement(kind: Kind) -> bool {
+    matches!(kind, Kind::Semicolon | Kind::Then | Kind::Do | Kind::Else | Kind::Of | Kind::Repeat | Kind::Try)
 }
 
 /// The colon of the label that starts here.
