@@ -79,6 +79,7 @@ fn form(kind: &StatementKind) -> &'static str {
         StatementKind::Call { instance: Some(_), .. } => "call an instance",
         StatementKind::CallBlock { .. } => "call a block",
         StatementKind::PrescanBlock { .. } => "prescan a block",
+        StatementKind::Stop(_) => "stop",
         StatementKind::Fault(_) => "fault",
         StatementKind::External(_) => "external",
     }

@@ -2,10 +2,10 @@
 
 use staunch_host::{Compiled, Domain, Machine, Map, Snapshot};
 use staunch_ir::Program;
-use staunch_ir::interpret::{Interpreter, Stop};
+use staunch_ir::interpret::{Interpreter, Stop, Watch};
 use staunch_ir::layout::Layout;
 use staunch_native::Jit;
-use staunch_runtime::{Context, Fault};
+use staunch_runtime::{Context, Fault, Time};
 
 /// Where the variables are in a program's state.
 pub fn map(program: &Program) -> Result<Map, String> {
@@ -58,9 +58,26 @@ impl Machine for Native {
     }
 }
 
+/// What watches an interpreted run, as the host sees it.
+pub trait Watching: Watch {
+    fn scan_begins(&mut self, number: u64, time: Time);
+
+    /// Whether the run ends after this scan.
+    fn ends(&mut self) -> bool;
+}
+
+/// Nothing.
+impl Watching for () {
+    fn scan_begins(&mut self, _: u64, _: Time) {}
+
+    fn ends(&mut self) -> bool {
+        false
+    }
+}
+
 /// The reference interpreter.
-pub struct Interpreted<'p> {
-    interpreter: Interpreter<'p>,
+pub struct Interpreted<'p, W = ()> {
+    interpreter: Interpreter<'p, W>,
     domain: Domain,
 }
 
@@ -68,15 +85,21 @@ impl<'p> Interpreted<'p> {
     /// The machine, and the map of its state.
     pub fn new(program: &'p Program) -> Result<(Self, Map), String> {
         let map = map(program)?;
-        Ok((Self { interpreter: Interpreter::new(program), domain: Domain::of(&map) }, map))
+        Ok((Self::watched(program, &map, ()), map))
+    }
+}
+
+impl<'p, W: Watching> Interpreted<'p, W> {
+    pub fn watched(program: &'p Program, map: &Map, watch: W) -> Self {
+        Self { interpreter: Interpreter::watched(program, watch), domain: Domain::of(map) }
     }
 
-    pub fn interpreter(&mut self) -> &mut Interpreter<'p> {
+    pub fn interpreter(&mut self) -> &mut Interpreter<'p, W> {
         &mut self.interpreter
     }
 }
 
-impl Machine for Interpreted<'_> {
+impl<W: Watching> Machine for Interpreted<'_, W> {
     fn state(&self) -> &[u8] {
         self.interpreter.state()
     }
@@ -89,6 +112,14 @@ impl Machine for Interpreted<'_> {
         self.interpreter.init();
     }
 
+    fn scan_begins(&mut self, number: u64, time: Time) {
+        self.interpreter.watch().scan_begins(number, time);
+    }
+
+    fn ends(&mut self) -> bool {
+        self.interpreter.watch().ends()
+    }
+
     fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
         match self.interpreter.scan(instance, cx) {
             Ok(()) => Ok(()),
@@ -98,7 +129,7 @@ impl Machine for Interpreted<'_> {
     }
 }
 
-impl core::fmt::Debug for Interpreted<'_> {
+impl<W> core::fmt::Debug for Interpreted<'_, W> {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.debug_struct("Interpreted").finish_non_exhaustive()
     }

@@ -178,6 +178,7 @@ impl<'a> Finder<'a> {
             | StatementKind::Finally { .. }
             | StatementKind::Exit
             | StatementKind::Continue
+            | StatementKind::Stop(_)
             | StatementKind::Return => {}
             StatementKind::PrescanBlock { block, .. } => self.reads_and_writes(block),
         }

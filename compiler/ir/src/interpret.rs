@@ -9,7 +9,7 @@ mod loops;
 mod place;
 
 use crate::layout::{Layout, usize_of};
-use crate::stop::StopStatement;
+use crate::stop;
 use crate::{Location, Place, Program, Routine, RoutineId, Value, reference};
 use core::fmt;
 use exchange::Exchange;
@@ -60,9 +60,6 @@ pub struct Interpreter<'p, W = ()> {
 /// What watches a run. It is a type parameter of the interpreter, so that a run that nobody watches has none of this in its
 /// code: `()` watches nothing.
 pub trait Watch: Sized {
-    /// Whether stops are looked at.
-    const STOPS: bool;
-
     /// A routine begins, which was called at a place.
     fn enter(&mut self, frame: &Frame, called_at: Location);
 
@@ -73,12 +70,10 @@ pub trait Watch: Sized {
     fn leave(&mut self, depth: usize);
 
     /// The run is at a stop.
-    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &StopStatement<'_>, at: Location, cx: &Context);
+    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &stop::Stop, at: Location, cx: &Context);
 }
 
 impl Watch for () {
-    const STOPS: bool = false;
-
     #[inline(always)]
     fn enter(&mut self, _: &Frame, _: Location) {}
 
@@ -91,7 +86,7 @@ impl Watch for () {
     fn leave(&mut self, _: usize) {}
 
     #[inline(always)]
-    fn stop(_: &mut Interpreter<'_, Self>, _: &StopStatement<'_>, _: Location, _: &Context) {}
+    fn stop(_: &mut Interpreter<'_, Self>, _: &stop::Stop, _: Location, _: &Context) {}
 }
 
 /// A routine's locals at the start of a call.

@@ -304,6 +304,7 @@ fn is_plain(kind: &StatementKind) -> bool {
         | StatementKind::Return
         | StatementKind::External(_)
         | StatementKind::PrescanBlock { .. }
+        | StatementKind::Stop(_)
         | StatementKind::Fault(_) => false,
     }
 }

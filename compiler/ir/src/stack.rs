@@ -89,6 +89,7 @@ impl Taken<'_> {
             | StatementKind::Return
             | StatementKind::CallBlock { .. }
             | StatementKind::PrescanBlock { .. }
+            | StatementKind::Stop(_)
             | StatementKind::Fault(_) => visit::values(statement, &mut |it| self.expr(it)),
         }
     }

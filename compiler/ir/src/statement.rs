@@ -2,6 +2,7 @@
 
 use crate::interval::Range;
 use crate::limits::limits;
+use crate::stop::Stop;
 use crate::{Expr, ExternalCall, FaultKind, Location, Place, RoutineId};
 use staunch_runtime::Context;
 
@@ -89,7 +90,9 @@ pub enum StatementKind {
         block: Place,
         instruction: usize,
     },
-    /// Stops the scan.
+    /// Where a run under a debugger can stop. Other executors do nothing here.
+    Stop(Box<Stop>),
+    /// Ends the scan.
     Fault(FaultKind),
 }
 
@@ -330,6 +333,7 @@ impl StatementKind {
             | Self::External(_)
             | Self::CallBlock { .. }
             | Self::PrescanBlock { .. }
+            | Self::Stop(_)
             | Self::Fault(_) => Vec::new(),
         }
     }
@@ -353,6 +357,7 @@ impl StatementKind {
             | Self::External(_)
             | Self::CallBlock { .. }
             | Self::PrescanBlock { .. }
+            | Self::Stop(_)
             | Self::Fault(_) => Vec::new(),
         }
     }

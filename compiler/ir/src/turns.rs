@@ -24,6 +24,7 @@ pub fn takes_turns(block: &[Statement], callee_does: &dyn Fn(RoutineId) -> bool)
         | StatementKind::External(_)
         | StatementKind::CallBlock { .. }
         | StatementKind::PrescanBlock { .. }
+        | StatementKind::Stop(_)
         | StatementKind::Fault(_) => false,
     })
 }

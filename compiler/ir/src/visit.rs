@@ -62,6 +62,7 @@ fn rewrite_statement(kind: &mut StatementKind, by: &mut impl Rewrite) {
         StatementKind::PrescanBlock { block: place, .. } | StatementKind::Try { kind: place, .. } => {
             rewrite_place(place, by)
         }
+        StatementKind::Stop(it) => it.asked.iter_mut().for_each(|it| rewrite_expr(&mut it.value, by)),
         StatementKind::Loop { count, .. } => {
             if let Some(it) = count {
                 rewrite_place(&mut it.counter, by);
@@ -161,6 +162,9 @@ pub fn accesses(statement: &Statement, see: &mut dyn FnMut(&Place, Access)) {
         }
         StatementKind::PrescanBlock { block, .. } => borrow(block, see),
         StatementKind::Try { kind, .. } => see(kind, Access::Write),
+        StatementKind::Stop(it) => {
+            it.asked.iter().for_each(|it| reads(&it.value, &mut |place| see(place, Access::Read)));
+        }
         StatementKind::For(it) => {
             index_reads(&it.counter, &mut |place| see(place, Access::Read));
             reads(&it.first, &mut |place| see(place, Access::Read));
@@ -210,6 +214,7 @@ pub fn values<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Expr)) {
         StatementKind::Call { arguments, .. } => arguments.iter().filter_map(Argument::value).for_each(see),
         StatementKind::External(it) => it.arguments.iter().filter_map(Argument::value).for_each(see),
         StatementKind::CallBlock { inputs, .. } => inputs.iter().for_each(see),
+        StatementKind::Stop(it) => it.asked.iter().for_each(|it| see(&it.value)),
         StatementKind::Loop { .. }
         | StatementKind::Finally { .. }
         | StatementKind::Turn
@@ -268,6 +273,7 @@ pub fn targets<'a>(statement: &'a Statement, see: &mut dyn FnMut(&'a Place)) {
         | StatementKind::Exit
         | StatementKind::Continue
         | StatementKind::Return
+        | StatementKind::Stop(_)
         | StatementKind::Fault(_) => {}
     }
 }

@@ -66,6 +66,7 @@ impl<'p> Function<'_, 'p> {
             StatementKind::PrescanBlock { block, instruction } => {
                 self.prescan_block(block, *instruction);
             }
+            StatementKind::Stop(_) => {}
             StatementKind::Fault(kind) => {
                 self.fault(*kind, statement.at);
                 return Flow::Leaves;

@@ -19,6 +19,7 @@ mod rewrite;
 use std::collections::{HashMap, HashSet};
 
 use staunch_ir::effects::{Effects, Rules, effects};
+use staunch_ir::stop::{Asked, Stop};
 use staunch_ir::{
     Argument, Block, Count, Expr, ExternalCall, FieldId, For, Mode, Param, ParamId, Place, Program, Projection, Root,
     Routine, RoutineId, RoutineKind, Statement, StatementKind, Type,
@@ -274,6 +275,10 @@ impl Separator<'_> {
             StatementKind::Exit => StatementKind::Exit,
             StatementKind::Continue => StatementKind::Continue,
             StatementKind::Return => StatementKind::Return,
+            StatementKind::Stop(it) => {
+                let asked = |it: &Asked| Asked { value: body.expr(&it.value), ..*it };
+                StatementKind::Stop(Box::new(Stop { asked: it.asked.as_ref().map(asked), ..**it }))
+            }
             StatementKind::Fault(kind) => StatementKind::Fault(*kind),
         };
         out.push(Statement::new(kind, at));

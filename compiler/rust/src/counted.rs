@@ -86,6 +86,7 @@ fn is_plain(kind: &StatementKind) -> bool {
         | StatementKind::Call { .. }
         | StatementKind::External(_)
         | StatementKind::PrescanBlock { .. }
+        | StatementKind::Stop(_)
         | StatementKind::Fault(_) => false,
     }
 }

@@ -96,6 +96,7 @@ impl Function<'_> {
             StatementKind::External(it) => self.external(statement, it),
             StatementKind::CallBlock { block, instruction, inputs } => self.call_block(block, *instruction, inputs),
             StatementKind::PrescanBlock { block, instruction } => self.prescan_block(block, *instruction),
+            StatementKind::Stop(_) => TokenStream::new(),
             StatementKind::Fault(kind) => {
                 let (kind, at) = (format_ident!("{kind:?}"), self.emitter.at(statement.at));
                 quote!(return Err(FaultKind::#kind)#at;)

@@ -5,13 +5,13 @@ use super::commands::{Command, Commands, HELP};
 use super::stop::Report;
 use super::variables::{Shown, by_path, evaluated, map_text, of_program, variables};
 use crate::args::Run;
+use crate::machine::Watching;
 use crate::output;
 use crate::session::{Asked, Session};
 use staunch_frontend::Style;
 use staunch_host::{Map, Options, json_text};
-use staunch_ir::interpret::debug::{Ask, Cause, Go, Stopped};
-use staunch_ir::stop::Asked as AskedThere;
-use staunch_ir::{Expr, Location, Program, visit};
+use staunch_ir::interpret::debug::{Ask, Cause, Debugger, Go, Stopped};
+use staunch_ir::{Expr, Location, Program, StatementKind, visit};
 use staunch_runtime::Time;
 use std::collections::HashSet;
 
@@ -43,14 +43,6 @@ impl<'a> Console<'a> {
     pub fn new(session: &'a Session, args: &'a Run, map: &'a Map, commands: Commands, options: &'a Options) -> Self {
         let (scan, time, stops, stopped_at) = (0, 0, 0, StoppedAt::default());
         Self { session, args, map, options, commands, scan, time, stops, stopped_at }
-    }
-
-    pub fn scan_begins(&mut self, number: u64, time: Time) {
-        (self.scan, self.time) = (number, time);
-    }
-
-    pub fn is_over(&self) -> bool {
-        self.stopped_at.is_over
     }
 
     pub fn stopped_at(&self) -> StoppedAt {
@@ -139,8 +131,10 @@ impl<'a> Console<'a> {
         let is_alike = here.name == there.name && variables_of(stopped.program()) == variables_of(other);
         let mut found = None;
         visit::statements(&there.body, &mut |it| {
-            if let Some(AskedThere::Value(value)) = it.kind.as_stop().map(|it| it.asked) {
-                found = Some(value);
+            if let StatementKind::Stop(stop) = &it.kind
+                && let Some(asked) = &stop.asked
+            {
+                found = Some(&asked.value);
             }
         });
         found.filter(|_| is_alike)
@@ -172,5 +166,17 @@ impl Ask for Console<'_> {
                 Command::Unknown(line) => output::tell(format_args!("`{line}` is not a command\n{HELP}")),
             }
         }
+    }
+}
+
+impl Watching for Debugger<Console<'_>> {
+    fn scan_begins(&mut self, number: u64, time: Time) {
+        if let Some(console) = self.asks() {
+            (console.scan, console.time) = (number, time);
+        }
+    }
+
+    fn ends(&mut self) -> bool {
+        self.asks().is_some_and(|it| it.stopped_at.is_over)
     }
 }

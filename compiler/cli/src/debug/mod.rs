@@ -3,20 +3,20 @@
 mod call_path;
 mod commands;
 mod console;
-mod machine;
 mod places;
 mod stop;
 mod variables;
 
 use crate::args::Run;
+use crate::machine::Interpreted;
 use crate::session::{Asked, Session};
 use crate::{USAGE, output};
 use commands::Commands;
 use console::Console;
-use machine::Debugged;
 use places::{Found, Places};
 use staunch_host::{Map, Options, json_text};
 use staunch_ir::Program;
+use staunch_ir::interpret::debug::Debugger;
 use std::collections::HashSet;
 use variables::map_text;
 
@@ -42,12 +42,12 @@ pub fn run(session: &Session, args: &Run, options: Options) -> Result<u8, String
     found.iter().flat_map(|it| &it.notes).try_for_each(|it| notes.tell(it))?;
     let breakpoints: HashSet<_> = found.iter().flat_map(|it| it.at.iter().copied()).collect();
     let console = Console::new(session, args, &map, commands, &options);
-    let mut machine = Debugged::new(&program, &map, breakpoints, console);
+    let mut machine = Interpreted::watched(&program, &map, Debugger::new(breakpoints, console));
     let ended = staunch_host::run(&mut machine, &map, &options);
-    let stopped = machine.stopped_at();
+    let stopped = machine.interpreter().watch().asks().map(|it| it.stopped_at()).unwrap_or_default();
     for it in found.iter().filter(|it| it.is_reachable && it.at.is_disjoint(&stopped.places)) {
         // A run that ended at a stop says nothing of the rest.
-        if !stopped.is_over && ended.is_ok() {
+        if !stopped.is_over {
             notes.tell(&it.never())?;
         }
     }

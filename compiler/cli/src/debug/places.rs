@@ -46,7 +46,7 @@ impl<'a> Places<'a> {
         let mut stops = Vec::new();
         for (number, routine) in program.routines.iter().enumerate() {
             visit::statements(&routine.body, &mut |it| {
-                if it.kind.as_stop().is_some() {
+                if matches!(it.kind, StatementKind::Stop(_)) {
                     stops.push(Stop { routine: RoutineId::next(number), at: it.at });
                 }
             });

@@ -5,8 +5,8 @@ use crate::expr::checker::Checker;
 use crate::options::AskedAt;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span, ast};
-use staunch_ir::stop::Asked;
-use staunch_ir::{Expr, Place, Statement};
+use staunch_ir::stop::{Asked, Stop};
+use staunch_ir::{Expr, Statement, StatementKind};
 
 impl Declarations<'_> {
     /// Whether a run can stop in the POU of a slot: not in the library.
@@ -24,12 +24,12 @@ impl<'s> Checker<'_, 's> {
         let at = self.at(span);
         let options = self.decl.log.options;
         let asked = options.stops.iter().flat_map(|it| &it.asked).find(|it| it.at == at);
-        let asked = asked.and_then(|it| self.asked_before(*it, span)).unwrap_or(Asked::Nothing);
+        let asked = asked.and_then(|it| self.asked_before(*it, span));
         let declared = self.signature.as_ref().map_or(0, |it| it.locals.len());
-        self.block.push(Statement::stop(declared, asked, at));
+        self.block.push(Statement::new(StatementKind::Stop(Box::new(Stop { declared, asked })), at));
     }
 
-    fn asked_before(&mut self, asked: AskedAt, statement: Span) -> Option<Asked<(Expr, Option<Place>)>> {
+    fn asked_before(&mut self, asked: AskedAt, statement: Span) -> Option<Asked> {
         let file = asked.expression;
         // It is read as the statement is.
         let dialect = self.decl.dialect(statement);
@@ -51,14 +51,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
-        let value = value?;
-        Some(match asked.is_condition {
-            true => Asked::Condition((value, None)),
-            false => {
-                let target = self.temporary("asked", value.ty);
-                Asked::Value((value, Some(target)))
-            }
-        })
+        Some(Asked { value: value?, is_condition: asked.is_condition })
     }
 
     fn asked_value(&mut self, written: &ast::Expr<'s>, is_condition: bool) -> Option<Expr> {

@@ -3,7 +3,7 @@
 use super::{Frame, Interpreter, Watch};
 use crate::evaluate::{scalar, text};
 use crate::layout::usize_of;
-use crate::stop::{Asked, StopStatement};
+use crate::stop;
 use crate::{Expr, Location, Place, Program, RoutineId, Type, Value};
 use staunch_runtime::{Context, Fault};
 use std::collections::HashSet;
@@ -103,8 +103,6 @@ impl<A> Debugger<A> {
 }
 
 impl<A: Ask> Watch for Debugger<A> {
-    const STOPS: bool = true;
-
     fn enter(&mut self, frame: &Frame, called_at: Location) {
         self.running.push(Running { called_at, frame: *frame });
     }
@@ -120,8 +118,8 @@ impl<A: Ask> Watch for Debugger<A> {
         }
     }
 
-    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &StopStatement<'_>, at: Location, cx: &Context) {
-        let Some(cause) = interpreter.cause(&stop.asked, at) else { return };
+    fn stop(interpreter: &mut Interpreter<'_, Self>, stop: &stop::Stop, at: Location, cx: &Context) {
+        let Some(cause) = interpreter.cause(stop.asked.as_ref(), at) else { return };
         let Some(mut asks) = interpreter.watch.asks.take() else { return };
         interpreter.watch.go = asks.stopped(&Stopped { at, cause, cx, declared: stop.declared, interpreter });
         interpreter.watch.depth = interpreter.watch.running.len();
@@ -130,14 +128,14 @@ impl<A: Ask> Watch for Debugger<A> {
 }
 
 impl<A: Ask> Interpreter<'_, Debugger<A>> {
-    fn cause(&self, asked: &Asked<&Expr>, at: Location) -> Option<Cause> {
+    fn cause(&self, asked: Option<&stop::Asked>, at: Location) -> Option<Cause> {
         if self.watch.steps() {
             return Some(Cause::Step);
         }
         if self.watch.go == Go::Unwatched || !self.watch.breakpoints.contains(&at) {
             return None;
         }
-        let Asked::Condition(condition) = asked else { return Some(Cause::Breakpoint) };
+        let Some(stop::Asked { value: condition, is_condition: true }) = asked else { return Some(Cause::Breakpoint) };
         let frame = self.watch.running.last()?.frame;
         match scalar(&self.scope(&frame), condition) {
             Ok(value) => (value == Value::Bool(true)).then_some(Cause::Breakpoint),

@@ -37,12 +37,6 @@ impl<'p, W: Watch> Interpreter<'p, W> {
                 return self.block(frame, block, cx);
             }
             StatementKind::Case { selector, arms, otherwise } => {
-                if W::STOPS
-                    && let Some(stop) = statement.kind.as_stop()
-                {
-                    W::stop(self, &stop, statement.at, cx);
-                    return Ok(Flow::Next);
-                }
                 let block = self.arm(frame, selector, arms)?.unwrap_or(otherwise);
                 return self.block(frame, block, cx);
             }
@@ -76,6 +70,7 @@ impl<'p, W: Watch> Interpreter<'p, W> {
             StatementKind::PrescanBlock { block, instruction } => {
                 self.prescan_block(frame, block, *instruction)?;
             }
+            StatementKind::Stop(stop) => W::stop(self, stop, statement.at, cx),
             StatementKind::Fault(kind) => {
                 return Err(Fault { kind: *kind, at: statement.at }.into());
             }

@@ -55,6 +55,7 @@ impl Printer<'_> {
             | StatementKind::External(_)
             | StatementKind::CallBlock { .. }
             | StatementKind::PrescanBlock { .. }
+            | StatementKind::Stop(_)
             | StatementKind::Fault(_) => Ok(()),
         }
     }
@@ -100,6 +101,11 @@ impl Printer<'_> {
             StatementKind::PrescanBlock { block, instruction } => {
                 format!("prescan {}", self.block_head(routine, block, *instruction, &[]))
             }
+            StatementKind::Stop(it) => match &it.asked {
+                Some(it) if it.is_condition => format!("stop if {}", self.expr(routine, &it.value)),
+                Some(it) => format!("stop {}", self.expr(routine, &it.value)),
+                None => "stop".to_owned(),
+            },
             StatementKind::Fault(kind) => format!("fault {kind:?}"),
         }
     }

@@ -67,6 +67,7 @@ pub fn moves_references(program: &Program, statement: &StatementKind) -> bool {
         | StatementKind::External(_)
         | StatementKind::CallBlock { .. }
         | StatementKind::PrescanBlock { .. }
+        | StatementKind::Stop(_)
         | StatementKind::Fault(_) => false,
     }
 }
@@ -161,6 +162,7 @@ impl<'p> Finder<'p> {
             | StatementKind::External(_)
             | StatementKind::CallBlock { .. }
             | StatementKind::PrescanBlock { .. }
+            | StatementKind::Stop(_)
             | StatementKind::Fault(_) => {}
         }
     }

@@ -159,6 +159,7 @@ impl Mover<'_> {
                 self.place(place)
             }
             StatementKind::Loop { body, .. } => self.take_turns(body, new.at),
+            StatementKind::Stop(it) => it.asked.iter_mut().for_each(|it| self.expr(&mut it.value)),
             StatementKind::Finally { .. }
             | StatementKind::Turn
             | StatementKind::Exit

@@ -12,7 +12,7 @@ pub(super) fn size(block: &[Statement]) -> usize {
     let mut size = 0;
     visit::statements(block, &mut |statement| {
         size += match &statement.kind {
-            StatementKind::Turn => 0,
+            StatementKind::Turn | StatementKind::Stop(_) => 0,
             StatementKind::For(_) | StatementKind::Loop { .. } => LARGE,
             StatementKind::Call { .. }
             | StatementKind::External(_)

@@ -106,6 +106,13 @@ impl<'p> Verifier<'p> {
                 let holds = body.in_loop && !body.in_continuing;
                 self.require(holds, at, "CONTINUE outside of a loop's body");
             }
+            StatementKind::Stop(it) => {
+                it.asked.iter().for_each(|it| match it.is_condition {
+                    true => self.expr_of(body, &it.value, Type::BOOL),
+                    false => self.expr(body, &it.value),
+                });
+                self.require(it.declared <= body.routine.locals.len(), at, "a stop with more locals than there are");
+            }
             StatementKind::Return | StatementKind::Turn | StatementKind::Fault(_) => {}
             StatementKind::Call { callee, instance, arguments, result } => {
                 self.call(body, *callee, instance.as_ref(), arguments, at);

@@ -113,6 +113,7 @@ impl Walk<'_> {
             | StatementKind::Exit
             | StatementKind::Continue
             | StatementKind::Return
+            | StatementKind::Stop(_)
             | StatementKind::Fault(_) => {}
         }
         visit::accesses(statement, &mut |place, access| {

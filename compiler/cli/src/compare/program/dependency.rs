@@ -190,7 +190,8 @@ impl Walk<'_, '_> {
             | StatementKind::Turn
             | StatementKind::External(_)
             | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. } => targets.iter().for_each(|it| self.write(it, &sources)),
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Stop(_) => targets.iter().for_each(|it| self.write(it, &sources)),
         }
         statement.kind.blocks().into_iter().for_each(|it| self.block(it, &sources));
     }

@@ -98,6 +98,7 @@ impl<'p> Walk<'p, '_> {
             | StatementKind::Return
             | StatementKind::External(_)
             | StatementKind::PrescanBlock { .. }
+            | StatementKind::Stop(_)
             | StatementKind::Fault(_) => {}
         }
     }

@@ -233,7 +233,7 @@ impl<'p> Walk<'_, 'p> {
                 way.forget_all();
                 statement.kind.clone()
             }
-            StatementKind::Turn => StatementKind::Turn,
+            StatementKind::Turn | StatementKind::Stop(_) => statement.kind.clone(),
             StatementKind::Exit | StatementKind::Continue | StatementKind::Return | StatementKind::Fault(_) => {
                 plain.push(statement.clone());
                 return None;
@@ -378,7 +378,8 @@ impl<'p> Walk<'_, 'p> {
             | StatementKind::Return
             | StatementKind::Call { .. }
             | StatementKind::CallBlock { .. }
-            | StatementKind::PrescanBlock { .. } => false,
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Stop(_) => false,
         };
         visit::values(statement, &mut |it| found |= faults.expr(it));
         visit::accesses(statement, &mut |place, access| found |= access != Access::Read && faults.place(place));
