@@ -331,7 +331,7 @@ impl<'a> Finder<'a> {
 
     fn is_within(&self, index: &Expr, array: ArrayId) -> bool {
         let checked = |id: LocalId| self.effects.checked[id.index()];
-        Known { program: self.program, loops: &self.loops, checked: &checked }.is_within(index, array)
+        Known { program: self.program, loops: &self.loops, checked: &checked, seen: &[] }.is_within(index, array)
     }
 }
 

@@ -59,6 +59,8 @@ pub struct Known<'a> {
     pub loops: &'a [&'a For],
     /// Whether a local's values [are checked](checked_locals).
     pub checked: &'a dyn Fn(LocalId) -> bool,
+    /// What integer variables are here, by assignments and checks before.
+    pub seen: &'a [(Place, Range)],
 }
 
 /// For each local, whether it holds a value of its subrange at any time: it starts with one, and
@@ -122,13 +124,14 @@ impl Known<'_> {
         {
             return self.program.range(place.ty);
         }
-        running(self.loops, place).map(|at| self.counter(at))
+        let seen = || Some(self.seen.iter().rfind(|it| it.0.is_same_variable(place))?.1);
+        running(self.loops, place).map(|at| self.counter(at)).or_else(seen)
     }
 
     /// What the counter of a loop may be. Its first and last value are found when it starts, in the loops around it.
     fn counter(&self, at: usize) -> Range {
         let it = self.loops[at];
-        let around = Self { loops: &self.loops[..at], ..*self };
+        let around = Self { loops: &self.loops[..at], seen: &[], ..*self };
         let [first, last] = [&it.first, &it.last].map(|it| around.range(it));
         let (first, last) = (first.unwrap_or(it.range), last.unwrap_or(it.range));
         match it.step {

@@ -107,7 +107,7 @@ pub fn linear<'a>(frame: &Frame<'_>, body: &'a [Statement]) -> Option<Linear<'a>
     let mut conditions = Vec::new();
     parts(Op::And, stays, &mut conditions);
     let has_others = !before.is_empty() || conditions.len() > 1;
-    let known = Known { program: frame.program, loops: &[], checked: &|_| false };
+    let known = Known { program: frame.program, loops: &[], checked: &|_| false, seen: &[] };
     conditions.into_iter().flat_map(compared).find_map(|(counter, bound, ahead, offset)| {
         let step = only_step(frame, rest, counter).filter(|_| is_private(frame, counter, before))?;
         let toward = step.is_positive() == ahead && !alias::changes(frame, body, bound);

@@ -40,7 +40,9 @@ impl Function<'_, '_> {
         let repr = inline_op::repr(self.module.program, op, operands);
         let values = operands.iter().map(|operand| self.scalar(operand)).collect();
         let constants = operands.iter().map(Expr::as_const).collect();
-        let operands = Operands { repr, values, constants, at };
+        let are_positive = matches!(op, Op::Div | Op::Mod)
+            && self.known(&|known| operands.iter().all(|it| known.range(it).is_some_and(|it| it.0 >= 0)));
+        let operands = Operands { repr, values, constants, are_positive, at };
         match inline_op::find(op) {
             Some(emit) => emit(self, &operands),
             None => runtime_call::operation(self, op, &operands),

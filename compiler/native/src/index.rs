@@ -43,7 +43,7 @@ impl Function<'_, '_> {
     }
 
     /// Whether the conversion of an integer has its value, whatever that is.
-    fn keeps_value(&mut self, operand: &Expr, expr: &Expr) -> bool {
+    pub(crate) fn keeps_value(&self, operand: &Expr, expr: &Expr) -> bool {
         let range = |it: &Expr| self.module.program.repr(it.ty).and_then(|it| it.range());
         range(operand).zip(range(expr)).is_some_and(|(from, to)| to.0 <= from.0 && from.1 <= to.1)
     }
@@ -55,7 +55,8 @@ impl Function<'_, '_> {
     /// What is known of counters and locals here.
     pub(crate) fn known<T>(&self, question: &dyn Fn(Known<'_>) -> T) -> T {
         let checked = |id: LocalId| self.checked[id.index()];
-        question(Known { program: self.module.program, loops: &self.counters, checked: &checked })
+        let seen = self.seen.ranges(self.builder.current_block());
+        question(Known { program: self.module.program, loops: &self.counters, checked: &checked, seen })
     }
 
     /// An index that is within its bounds as a value plus a constant, which is at most so many, or as a constant

@@ -121,6 +121,8 @@ fn modulo(f: &mut Function<'_, '_>, o: &Operands) -> Clif {
 /// `MIN / -1`, which small integers avoid by being divided at 32 bits.
 struct Division {
     repr: Repr,
+    /// By its type, or by what is known of the operands.
+    is_unsigned: bool,
     a: Clif,
     b: Clif,
     /// At run time the divisor may be -1, with a dividend of the same width.
@@ -135,13 +137,14 @@ impl Division {
             f.fault_if(is_zero, FaultKind::DivideByZero, o.at);
         }
         let is_small = o.repr.size() < 4;
-        let may_overflow = o.repr.is_signed() && !is_small && divisor.is_none_or(|divisor| divisor == -1);
+        let is_unsigned = !o.repr.is_signed() || o.are_positive;
+        let may_overflow = !is_unsigned && !is_small && divisor.is_none_or(|divisor| divisor == -1);
         let mut wide = |value| if is_small { extend(f, o.repr, value) } else { value };
-        Self { repr: o.repr, a: wide(o.values[0]), b: wide(o.values[1]), may_overflow }
+        Self { repr: o.repr, is_unsigned, a: wide(o.values[0]), b: wide(o.values[1]), may_overflow }
     }
 
     fn quotient(&self, f: &mut Function<'_, '_>) -> Clif {
-        if !self.repr.is_signed() {
+        if self.is_unsigned {
             return f.ins().udiv(self.a, self.b);
         }
         if !self.may_overflow {
@@ -154,7 +157,7 @@ impl Division {
     }
 
     fn remainder(&self, f: &mut Function<'_, '_>) -> Clif {
-        if !self.repr.is_signed() {
+        if self.is_unsigned {
             return f.ins().urem(self.a, self.b);
         }
         if !self.may_overflow {

@@ -16,6 +16,7 @@ mod measure;
 mod module;
 mod operands;
 mod signature;
+mod tidy;
 
 mod scan;
 

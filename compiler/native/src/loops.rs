@@ -76,6 +76,7 @@ impl<'p> Function<'_, 'p> {
 
     pub(crate) fn start_for(&mut self, it: &'p For, at: Location) -> Running<'p> {
         let repr = self.module.program.repr(it.counter.ty).expect("verified IR: an integer counter");
+        self.seen.forget_variables();
         self.assign(&it.counter, &it.first);
         let last = it.last.as_const().is_none().then(|| self.wide_scalar(repr, &it.last));
         let step = match &it.step {
@@ -219,6 +220,7 @@ impl<'p> Function<'_, 'p> {
 
     /// Gives the counter a value of 64 bits, in its register and, if that is wanted, in its storage.
     pub(crate) fn set_counter(&mut self, running: &Running<'p>, value: clif::Value, is_stored: bool) {
+        self.forget(&running.it.counter);
         if let Some(register) = running.register {
             self.builder.def_var(register, value);
         }

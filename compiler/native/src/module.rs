@@ -5,6 +5,7 @@ use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
 use crate::measure::{Made, Measures, measures};
 use crate::target::Aim;
+use crate::tidy::tidy;
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
@@ -249,6 +250,9 @@ impl<'p> ModuleEmitter<'p> {
         let placed = inliner.placed;
         inlined.map_err(|error| Error::Code { function: name.to_owned(), reason: reason(&error) })?;
         marks.extend(self.small.marks(&placed, &context.func));
+        if !placed.is_empty() {
+            tidy(&mut context.func);
+        }
         if self.aim == Aim::Speed {
             self.small.note(id, &context.func, &marks);
         }

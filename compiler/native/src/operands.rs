@@ -11,5 +11,7 @@ pub(crate) struct Operands {
     pub(crate) values: Vec<clif::Value>,
     /// Where an operand is constant, what it is.
     pub(crate) constants: Vec<Option<Value>>,
+    /// None is below 0, in a division.
+    pub(crate) are_positive: bool,
     pub(crate) at: Location,
 }

@@ -84,7 +84,8 @@ impl Function<'_, '_> {
         }
         let bounds = program.array(id);
         let needs_check = !self.known(&|known| known.is_within(index, id));
-        let index = self.index(index);
+        let written = index;
+        let index = self.index(written);
         if needs_check {
             // Below the lower bound the difference wraps, and is too large as well.
             let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
@@ -93,6 +94,7 @@ impl Function<'_, '_> {
                 let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
                 self.fault_if(outside, FaultKind::IndexOutOfRange, at);
                 self.seen.note(self.builder.current_block(), (index, id));
+                self.note_index(written, id);
             }
             return self.element_at(array, position, stride);
         }

@@ -1,8 +1,20 @@
-//! Checks that have been made on the way to where the code continues: of an index that is a value of a register, one check of
-//! its bounds does for what follows it without a branch.
+//! What is known where the code continues, by what it has done on the way there without a branch: which checks of an index it
+//! has made, and what numbers integer variables are.
+//!
+//! ```text
+//! buffer[pos] := x;             IF pos > 31 THEN fault; END_IF
+//! pos := (pos + 1) MOD 32;      pos is in 0..31, so that MOD is AND here
+//! ```
+//!
+//! A variable is forgotten with each statement that may write it. A call may write any.
 
+use crate::function::Function;
 use cranelift_codegen::ir as clif;
-use staunch_ir::ArrayId;
+use staunch_ir::alias::{Alias, Frame, alias};
+use staunch_ir::interval::Range;
+use staunch_ir::loops::running;
+use staunch_ir::visit::{self, Access};
+use staunch_ir::{ArrayId, Conversion, Expr, ExprKind, Place, Statement, StatementKind};
 
 /// An index, and an array within whose bounds it is.
 pub(crate) type Within = (clif::Value, ArrayId);
@@ -15,6 +27,7 @@ const MOST: usize = 16;
 pub(crate) struct Seen {
     block: Option<clif::Block>,
     checked: Vec<Within>,
+    ranges: Vec<(Place, Range)>,
 }
 
 impl Seen {
@@ -23,10 +36,30 @@ impl Seen {
     }
 
     pub(crate) fn note(&mut self, block: Option<clif::Block>, it: Within) {
-        if self.block != block || self.checked.len() >= MOST {
-            *self = Self { block, checked: Vec::new() };
+        self.enter(block);
+        if self.checked.len() >= MOST {
+            self.checked.clear();
         }
         self.checked.push(it);
+    }
+
+    /// What variables are, the last said last.
+    pub(crate) fn ranges(&self, block: Option<clif::Block>) -> &[(Place, Range)] {
+        if self.block == block { &self.ranges } else { &[] }
+    }
+
+    fn note_range(&mut self, block: Option<clif::Block>, place: &Place, range: Range) {
+        self.enter(block);
+        if self.ranges.len() >= MOST {
+            self.ranges.clear();
+        }
+        self.ranges.push((place.clone(), range));
+    }
+
+    fn enter(&mut self, block: Option<clif::Block>) {
+        if self.block != block {
+            *self = Self { block, ..Self::default() };
+        }
     }
 
     /// The one way to `next` is out of `block`, where it has done what it does.
@@ -35,4 +68,86 @@ impl Seen {
             self.block = Some(next);
         }
     }
+
+    /// Any variable may have been written.
+    pub(crate) fn forget_variables(&mut self) {
+        self.ranges.clear();
+    }
+}
+
+impl Function<'_, '_> {
+    /// An index was found to be within the bounds of an array.
+    pub(crate) fn note_index(&mut self, index: &Expr, array: ArrayId) {
+        let array = self.module.program.array(array);
+        if let Some(place) = self.variable(index) {
+            self.note_range(place, (array.low.into(), array.high.into()));
+        }
+    }
+
+    /// What a statement will have assigned, before it does.
+    pub(crate) fn assigned(&self, statement: &Statement) -> Option<Range> {
+        let StatementKind::Assign { target, value } = &statement.kind else { return None };
+        let whole = self.module.program.repr(target.ty)?.range()?;
+        let range = self.known(&|known| known.range(value)).filter(|it| *it != whole)?;
+        is_plain(target).then_some(range)
+    }
+
+    /// Forgets what a statement may have written, and notes what it has assigned.
+    pub(crate) fn note_written(&mut self, statement: &Statement, assigned: Option<Range>) {
+        match &statement.kind {
+            StatementKind::Assign { .. } | StatementKind::CallBlock { .. } => {
+                visit::accesses(statement, &mut |place, access| {
+                    if access != Access::Read {
+                        self.forget(place);
+                    }
+                });
+            }
+            StatementKind::Turn | StatementKind::Stop(_) => {}
+            StatementKind::If { .. }
+            | StatementKind::Case { .. }
+            | StatementKind::Loop { .. }
+            | StatementKind::For(_)
+            | StatementKind::Try { .. }
+            | StatementKind::Finally { .. }
+            | StatementKind::Exit
+            | StatementKind::Continue
+            | StatementKind::Return
+            | StatementKind::Call { .. }
+            | StatementKind::External(_)
+            | StatementKind::PrescanBlock { .. }
+            | StatementKind::Fault(_) => self.seen.forget_variables(),
+        }
+        if let (StatementKind::Assign { target, .. }, Some(range)) = (&statement.kind, assigned) {
+            self.note_range(target, range);
+        }
+    }
+
+    /// A variable was written.
+    pub(crate) fn forget(&mut self, place: &Place) {
+        let frame = Frame::of(self.module.program, self.routine);
+        self.seen.ranges.retain(|it| alias(&frame, place, &it.0) == Alias::No);
+    }
+
+    /// Counters of loops are known by their loops.
+    fn note_range(&mut self, place: &Place, range: Range) {
+        if running(&self.counters, place).is_none() {
+            self.seen.note_range(self.builder.current_block(), place, range);
+        }
+    }
+
+    /// The variable whose value an expression is.
+    fn variable<'e>(&self, expr: &'e Expr) -> Option<&'e Place> {
+        match &expr.kind {
+            ExprKind::Load(place) if is_plain(place) => Some(place),
+            ExprKind::Convert(Conversion::Value | Conversion::Same, operand) if self.keeps_value(operand, expr) => {
+                self.variable(operand)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether a place is a variable or a member of one, whatever other variables are.
+fn is_plain(place: &Place) -> bool {
+    !place.is_followed() && place.indices().next().is_none()
 }

@@ -20,7 +20,9 @@ impl<'p> Function<'_, 'p> {
                 Some(run) => {
                     let (statements, others) = rest.split_at(run.len);
                     rest = others;
-                    self.looked_up_once(&run, statements)
+                    let flow = self.looked_up_once(&run, statements);
+                    self.seen.forget_variables();
+                    flow
                 }
                 None => {
                     let at = block.len() - rest.len();
@@ -37,6 +39,13 @@ impl<'p> Function<'_, 'p> {
     }
 
     fn statement(&mut self, statement: &'p Statement) -> Flow {
+        let assigned = self.assigned(statement);
+        let flow = self.emit(statement);
+        self.note_written(statement, assigned);
+        flow
+    }
+
+    fn emit(&mut self, statement: &'p Statement) -> Flow {
         self.release_temporaries();
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(target, value),

@@ -56,7 +56,9 @@ impl Function<'_> {
         for (projection, ty) in place.projections.iter().zip(self.emitter.types_along(self.routine, place)) {
             let (Projection::Index { index, at }, Type::Array(array)) = (projection, ty) else { continue };
             let is_counter = counter(index).is_some_and(|it| it.is_same_variable(&counted.counter));
-            if is_counter && (Known { program, loops: &[counted], checked: &|_| false }).is_within(index, array) {
+            if is_counter
+                && (Known { program, loops: &[counted], checked: &|_| false, seen: &[] }).is_within(index, array)
+            {
                 let bounds = program.array(array);
                 let new = || Use { index: (**index).clone(), array, at: *at, times: 0 };
                 uses.entry((bounds.low, bounds.high)).or_insert_with(new).times += 1;

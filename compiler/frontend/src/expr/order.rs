@@ -314,7 +314,7 @@ impl Checker<'_, '_> {
     fn is_inside(&self, index: &Expr, array: ArrayId) -> bool {
         let loops: Vec<_> = self.counters.iter().map(|it| &it.head).filter(|it| it.is_private).collect();
         let checked = |id: LocalId| matches!(self.locals[id.index()].ty, Type::Subrange(..));
-        Known { program: &self.decl.program, loops: &loops, checked: &checked }.is_within(index, array)
+        Known { program: &self.decl.program, loops: &loops, checked: &checked, seen: &[] }.is_within(index, array)
     }
 
     pub(crate) fn root_type(&self, root: Root) -> Option<Type> {

@@ -12,7 +12,7 @@ impl Checker<'_, '_> {
     pub(crate) fn known_range(&self, number: &Expr) -> (i128, i128) {
         let program = &self.decl.program;
         let loops: Vec<&For> = self.counters.iter().map(|it| &it.head).filter(|it| it.is_private).collect();
-        let known = loops::Known { program, loops: &loops, checked: &|_| false };
+        let known = loops::Known { program, loops: &loops, checked: &|_| false, seen: &[] };
         let declared = match &number.kind {
             ExprKind::Convert(Conversion::Value | Conversion::Same, inner) if program.repr(inner.ty).is_some() => {
                 return self.known_range(inner);

@@ -61,7 +61,7 @@ fn ranges_hold_for_every_value() {
     for (first, last, step) in [(-3, 4, 1), (-3, 1, 1), (-1, 4, 1), (0, 7, 2), (5, -2, -3), (300, 310, 1)] {
         let (a, b) = (counted(temp(), first, last, step), counted(other.clone(), -2, 3, 1));
         let loops = [&a, &b];
-        let known = Known { program: &program, loops: &loops, checked: &|_| false };
+        let known = Known { program: &program, loops: &loops, checked: &|_| false, seen: &[] };
         for op in [Op::Add, Op::Sub, Op::Mul, Op::Mod, Op::And, Op::Or, Op::Max] {
             for right in [load(other.clone()), int(0), int(1), int(6), int(-4), int(i16::MAX)] {
                 let expr = Expr::apply(op, Type::INT, vec![load(temp()), right.clone()], AT);
@@ -92,7 +92,7 @@ fn ranges_are_as_narrow_as_they_can_be() {
     let other = counted(crate::fixture::limit(), -2, 3, 1);
     let range = |first, last, op, right: Expr| {
         let counter = counted(temp(), first, last, 1);
-        let known = Known { program: &program, loops: &[&counter, &other], checked: &|_| false };
+        let known = Known { program: &program, loops: &[&counter, &other], checked: &|_| false, seen: &[] };
         known.range(&Expr::apply(op, Type::INT, vec![load(temp()), right], AT)).unwrap()
     };
     let beside = || load(crate::fixture::limit());
@@ -118,7 +118,7 @@ fn an_inner_counter_is_bounded_by_the_loops_around() {
     let rest = Expr::apply(Op::Sub, Type::INT, vec![int(6), load(outer.clone())], AT);
     let range = |it: For, loops_around: &[&For]| {
         let loops: Vec<_> = loops_around.iter().copied().chain([&it]).collect();
-        Known { program: &program, loops: &loops, checked: &|_| false }.range(&load(inner.clone())).unwrap()
+        Known { program: &program, loops: &loops, checked: &|_| false, seen: &[] }.range(&load(inner.clone())).unwrap()
     };
     let up = || For { last: rest.clone(), ..counted(inner.clone(), 0, 0, 1) };
     assert_eq!(range(up(), &[&around]), (0, 6));
@@ -129,7 +129,7 @@ fn an_inner_counter_is_bounded_by_the_loops_around() {
     let wraps = For { last: beyond, ..counted(inner.clone(), 0, 0, 1) };
     assert_eq!(range(wraps, &[&around]), (0, i16::MAX.into()));
     let next = |limit: i16| Expr::apply(Op::Add, Type::INT, vec![load(outer.clone()), int(limit)], AT);
-    let known = Known { program: &program, loops: &[&around], checked: &|_| false };
+    let known = Known { program: &program, loops: &[&around], checked: &|_| false, seen: &[] };
     assert!(known.is_exact(&next(i16::MAX - 6)) && !known.is_exact(&next(i16::MAX - 5)));
 }
 
@@ -137,7 +137,7 @@ fn an_inner_counter_is_bounded_by_the_loops_around() {
 fn what_leaves_its_type_may_be_anything() {
     let program = sample(Vec::new());
     let counter = counted(temp(), 0, i16::MAX, 1);
-    let known = Known { program: &program, loops: &[&counter], checked: &|_| false };
+    let known = Known { program: &program, loops: &[&counter], checked: &|_| false, seen: &[] };
     let next = Expr::apply(Op::Add, Type::INT, vec![load(temp()), int(1)], AT);
     assert_eq!(known.range(&next), Some((i16::MIN.into(), i16::MAX.into())));
     assert_eq!(known.range(&load(temp())), Some((0, i16::MAX.into())));
@@ -178,7 +178,7 @@ fn is_checked(body: impl FnOnce(Place) -> Vec<Statement>) -> bool {
     let checked = checked_locals(&program.routines[MAIN]);
     assert!(!checked[0], "temp is of no subrange");
     let index = Expr::load(Place::local(LocalId(1), INDEX), AT).read();
-    let known = Known { program: &program, loops: &[], checked: &|id| checked[id.index()] };
+    let known = Known { program: &program, loops: &[], checked: &|id| checked[id.index()], seen: &[] };
     let last = ArrayId::next(program.arrays.len() - 1);
     assert_eq!(known.is_within(&index, last), checked[1]);
     assert!(!known.is_within(&index, ArrayId(0)), "an array of other bounds");
