@@ -111,7 +111,9 @@ impl<'p> Function<'_, 'p> {
         }
         let further = self.builder.create_block();
         let after = if matches!(control, Control::Always) { frame.after } else { self.turn_end() };
-        self.further_turn(control, further, after);
+        let end = self.natural_end(control, after);
+        self.further_turn(control, further, end);
+        self.close_end(control, end, after);
         self.go_on_in(further);
         Flow::Continues
     }

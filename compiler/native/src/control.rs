@@ -2,7 +2,7 @@
 
 use cranelift_codegen::ir as clif;
 use cranelift_frontend::Variable;
-use staunch_ir::{Count, Expr, For, Location, Repr, Taking};
+use staunch_ir::{Count, Expr, For, Location, Repr, Step, Taking};
 
 /// What leads to a further turn.
 pub(crate) enum Control<'p> {
@@ -25,6 +25,16 @@ pub(crate) struct Running<'p> {
     /// What is not constant.
     pub(crate) last: Option<clif::Value>,
     pub(crate) step: Option<clif::Value>,
+}
+
+impl Running<'_> {
+    /// Whether the counter may leave its type by a step, which is past the last value then: the register is wider, so that this
+    /// need not be tested in each turn.
+    pub(crate) fn oversteps(&self) -> bool {
+        let is_whole = self.repr.size() < 8 && self.repr.range() == Some(self.it.range);
+        let is_constant = matches!(self.it.step, Step::Constant(_));
+        self.register.is_some() && is_whole && is_constant && self.it.may_leave_range()
+    }
 }
 
 /// What says how many turns a loop has, when it starts.

@@ -50,15 +50,16 @@ impl Function<'_, '_> {
     }
 
     fn convert(&mut self, how: Conversion, operand: &Expr, expr: &Expr) -> clif::Value {
+        let (from, to) = (self.repr_of(operand), self.repr_of(expr));
+        // A counter in a register is the number at 64 bits.
         if how == Conversion::Value
+            && from != Repr::U64
+            && to != Repr::Bool
             && let Some(counter) = self.counter(operand)
-            && self.repr_of(expr).is_integer()
-            && self.repr_of(expr).size() == 8
         {
-            return counter;
+            return inline_conversion::from_wide(self, counter, from, to);
         }
         let value = self.scalar(operand);
-        let (from, to) = (self.repr_of(operand), self.repr_of(expr));
         match how {
             Conversion::Same => value,
             Conversion::Value => inline_conversion::convert(self, value, from, to),

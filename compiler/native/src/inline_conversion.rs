@@ -22,6 +22,16 @@ pub(crate) fn convert(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Rep
     }
 }
 
+/// As [`convert`], for an integer of at most 64 bits with a sign that has been extended to so many.
+pub(crate) fn from_wide(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Repr) -> Clif {
+    let narrow = if from.size() < 4 { Repr::I32 } else { Repr::I64 };
+    if to.is_float() && narrow == Repr::I32 {
+        let value = f.ins().ireduce(types::I32, value);
+        return convert(f, value, narrow, to);
+    }
+    convert(f, value, Repr::I64, to)
+}
+
 /// `ops::trunc`.
 pub(crate) fn truncate(f: &mut Function<'_, '_>, value: Clif, from: Repr, to: Repr) -> Clif {
     if from.is_float() && to.is_integer() { saturate(f, value, to) } else { convert(f, value, from, to) }

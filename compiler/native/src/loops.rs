@@ -148,8 +148,10 @@ impl<'p> Function<'_, 'p> {
         if self.innermost().is_continued {
             self.go_on_in(frame.next);
             if self.end_of_turn(control, continuing) == Flow::Continues {
-                self.further_turn(control, turn, frame.after);
+                let end = self.natural_end(control, frame.after);
+                self.further_turn(control, turn, end);
                 self.leads_back(1);
+                self.close_end(control, end, frame.after);
             }
         }
         self.builder.seal_block(turn);
@@ -201,10 +203,45 @@ impl<'p> Function<'_, 'p> {
         }
     }
 
+    /// Where a loop ends whose counter is past its last value: there it steps back if it has left its type, which a register of 64
+    /// bits lets it do.
+    pub(crate) fn natural_end(&mut self, control: &Control<'p>, after: clif::Block) -> clif::Block {
+        match control {
+            Control::Count(running) if running.oversteps() => self.builder.create_block(),
+            Control::Count(_) | Control::Unless(_) | Control::Always => after,
+        }
+    }
+
+    pub(crate) fn close_end(&mut self, control: &Control<'p>, end: clif::Block, after: clif::Block) {
+        let Control::Count(running) = control else { return };
+        if end == after {
+            return;
+        }
+        self.go_on_in(end);
+        let counter = self.counter_value(running);
+        let Step::Constant(step) = running.it.step else { unreachable!("only constant steps are undone") };
+        let range = running.it.range;
+        let edge = self.integer(types::I64, if step > 0 { range.1 } else { range.0 });
+        let counter = match step {
+            // No other operation needs the counter before the step, so that it shares its register.
+            1 => self.ins().smin(counter, edge),
+            -1 => self.ins().smax(counter, edge),
+            _ => {
+                let is_out = if step > 0 { IntCC::SignedGreaterThan } else { IntCC::SignedLessThan };
+                let is_out = self.ins().icmp(is_out, counter, edge);
+                let step = self.integer(types::I64, step);
+                let back = self.ins().isub(counter, step);
+                self.ins().select(is_out, back, counter)
+            }
+        };
+        self.set_counter(running, counter, true);
+        self.ins().jump(after, &[]);
+    }
+
     /// The counter's next value, in its register and in its storage.
     fn step(&mut self, running: &Running<'p>) {
         let counter = self.counter_value(running);
-        if running.it.may_leave_range() {
+        if running.it.may_leave_range() && !running.oversteps() {
             self.unless_out_of_range(running, counter);
         }
         let value = match (&running.it.step, running.step) {
