@@ -2,6 +2,7 @@
 
 use crate::function::Function;
 use crate::signature::clif_type;
+use crate::single_bit;
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Type, Value as Clif, types};
 use staunch_ir::Repr;
@@ -48,7 +49,8 @@ fn is_not_zero(f: &mut Function<'_, '_>, value: Clif, from: Repr) -> Clif {
         let zero = f.constant(from.zero());
         f.ins().fcmp(FloatCC::NotEqual, value, zero)
     } else {
-        f.ins().icmp_imm_u(IntCC::NotEqual, value, 0)
+        let zero = f.integer(clif_type(from), 0);
+        single_bit::test(f, false, value, zero).unwrap_or_else(|| f.ins().icmp(IntCC::NotEqual, value, zero))
     }
 }
 

@@ -17,6 +17,7 @@ mod module;
 mod operands;
 mod signature;
 mod tidy;
+mod unused;
 
 mod scan;
 

@@ -6,6 +6,7 @@ use crate::inline_routine::SmallRoutines;
 use crate::measure::{Made, Measures, measures};
 use crate::target::Aim;
 use crate::tidy::tidy;
+use crate::unused::drop_unused_loads;
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
@@ -273,6 +274,7 @@ impl<'p> ModuleEmitter<'p> {
     }
 
     fn define(&mut self, context: &mut Context, id: FuncId, name: &str, mut marks: Marks) -> Result<(), Error> {
+        drop_unused_loads(&mut context.func);
         let is_marked = self.counts && is_marked(&context.func, &marks);
         if is_marked {
             marks.extend(sizes(&context.func));

@@ -3,9 +3,10 @@
 //! ```text
 //! (SHR(w, 3) AND 1) <> 0        (w AND 8) <> 0
 //! (w AND 16#80) = 16#80         (w AND 16#80) <> 0
+//! w.3                           (w AND 8) <> 0
 //! ```
 //!
-//! It applies to a comparison of an AND that leaves one bit with a constant, by = or <>: machines test bits against zero in one
+//! It applies to a comparison of an AND that leaves one bit with a constant, by = or <>, and to its conversion to BOOL: machines test bits against zero in one
 //! instruction. It may not assume that a bit comes from the word that is shifted: one that a shift has moved in is zero, and
 //! such a comparison stays as it is.
 

@@ -13,6 +13,7 @@
 //! and a callee loads by its pointer is at one place for it after this. And whether a callee faulted is decided where its code says
 //! so, and not again after the call.
 
+use crate::unused::{Uses, drop_unused_params};
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, BlockArg, BlockCall, Function, Inst, InstructionData, Opcode, Value};
 
@@ -23,13 +24,14 @@ pub(crate) fn tidy(function: &mut Function) {
         let instructions: Vec<Inst> = function.layout.block_insts(*block).collect();
         instructions.into_iter().for_each(|it| rebase(function, it));
     }
-    let uses = uses(function);
+    let uses = Uses::of_all(function);
     let flow = ControlFlowGraph::with_function(function);
     for block in blocks {
         if let Some(test) = Test::of(function, &uses, block) {
             test.decide(function, &flow);
         }
     }
+    drop_unused_params(function);
 }
 
 /// Gives a load or a store the base that its pointer was made of by adding a constant.
@@ -69,19 +71,6 @@ fn constant(function: &Function, value: Value) -> Option<i64> {
     }
 }
 
-/// How often each value is used.
-fn uses(function: &Function) -> Vec<u32> {
-    let mut uses = vec![0; function.dfg.num_values()];
-    for block in function.layout.blocks() {
-        for inst in function.layout.block_insts(block) {
-            for value in function.dfg.inst_values(inst) {
-                uses[function.dfg.resolve_aliases(value).as_u32() as usize] += 1;
-            }
-        }
-    }
-    uses
-}
-
 /// A block that begins with the test of the code that a callee returned.
 struct Test {
     block: Block,
@@ -93,7 +82,7 @@ struct Test {
 }
 
 impl Test {
-    fn of(function: &Function, uses: &[u32], block: Block) -> Option<Self> {
+    fn of(function: &Function, uses: &Uses, block: Block) -> Option<Self> {
         let branch = function.layout.first_inst(block)?;
         let InstructionData::Brif { arg, blocks: [faulted, fine], .. } = function.dfg.insts[branch] else {
             return None;
@@ -105,7 +94,7 @@ impl Test {
         let is_code = |it: BlockArg| it.as_value().is_some_and(|it| function.dfg.resolve_aliases(it) == arg);
         let passed = faulted.args(pool).filter(|it| is_code(*it)).count();
         // Nobody else asks for the code, and all that is known of the others comes after the test.
-        let is_only = uses[arg.as_u32() as usize] as usize == 1 + passed;
+        let is_only = uses.of(arg) == 1 + passed;
         let ends = leaves(function, faulted.block(pool), params);
         (is_only && ends && passed == faulted.len(pool)).then_some(Self { block, branch, code, faulted, fine })
     }
