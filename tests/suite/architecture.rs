@@ -34,6 +34,8 @@ const EDGES: &[(&str, &[&str])] = &[
     ),
     // A second reading of the language sees the syntax tree, and nothing of the first.
     ("staunch-witness", &["staunch-frontend", "staunch-runtime"]),
+    ("staunch-machine", &["staunch-native", "staunch-ir", "staunch-host", "staunch-runtime"]),
+    ("staunch-compare", &["staunch-frontend", "staunch-machine", "staunch-ir", "staunch-host", "staunch-runtime"]),
     ("staunch-build", &["staunch-frontend", "staunch-ir", "staunch-rust", "toml"]),
     ("staunch-example-build-script", &["staunch-runtime", "staunch-build"]),
     ("staunch-example-external-rust", &["staunch-runtime", "staunch-build"]),
@@ -55,7 +57,7 @@ const UNSAFE: &[&str] = &[
     "runtime/host/src/signal.rs",
     "runtime/host/src/terminal.rs",
     "compiler/native/src/jit.rs",
-    "compiler/cli/src/machine.rs",
+    "compiler/machine/src/lib.rs",
     "compiler/rust/src/glue.rs",
     // Texts of entry points, compiled on their own.
     "compiler/cli/src/toolchain.rs",

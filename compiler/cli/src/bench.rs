@@ -1,7 +1,6 @@
 //! `staunch bench`: the time of a scan, and the size of the code.
 
 use crate::args::{Bench, BuildBackend, MessageFormat, Opt};
-use crate::machine::Native;
 use crate::run::cycle;
 use crate::rustc::{self, Kind};
 use crate::session::Session;
@@ -9,6 +8,7 @@ use crate::{REJECTED, output};
 use staunch_host::{BenchOptions, Error, Timing};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
+use staunch_machine::Native;
 use staunch_native::Target;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};

@@ -26,7 +26,6 @@ mod rustc;
 mod bench;
 mod compare;
 mod convert;
-mod machine;
 
 mod debug;
 

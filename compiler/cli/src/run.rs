@@ -1,12 +1,12 @@
 //! `staunch run`: in this process, or, for the Rust back end, as an executable of its own.
 
 use crate::args::{self, Backend, MessageFormat, Opt, Run};
-use crate::machine::{Interpreted, Native};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
 use crate::{REJECTED, apart, debug};
 use staunch_host::{AtEnd, Io, Machine, Map, Moment, Options, Overrun, Pacing};
 use staunch_ir::Program;
+use staunch_machine::{Interpreted, Native};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::Command;

@@ -5,13 +5,13 @@ use super::commands::{Command, Commands, HELP};
 use super::stop::Report;
 use super::variables::{Shown, by_path, evaluated, map_text, of_program, variables};
 use crate::args::Run;
-use crate::machine::Watching;
 use crate::output;
 use crate::session::{Asked, Session};
 use staunch_frontend::Style;
 use staunch_host::{Map, Options, json_text};
-use staunch_ir::interpret::debug::{Ask, Cause, Debugger, Go, Stopped};
+use staunch_ir::interpret::debug::{Ask, Cause, Go, Stopped};
 use staunch_ir::{Expr, Location, Program, StatementKind, visit};
+use staunch_machine::Debugs;
 use staunch_runtime::Time;
 use std::collections::HashSet;
 
@@ -169,14 +169,12 @@ impl Ask for Console<'_> {
     }
 }
 
-impl Watching for Debugger<Console<'_>> {
+impl Debugs for Console<'_> {
     fn scan_begins(&mut self, number: u64, time: Time) {
-        if let Some(console) = self.asks() {
-            (console.scan, console.time) = (number, time);
-        }
+        (self.scan, self.time) = (number, time);
     }
 
-    fn ends(&mut self) -> bool {
-        self.asks().is_some_and(|it| it.stopped_at.is_over)
+    fn ends(&self) -> bool {
+        self.stopped_at.is_over
     }
 }

@@ -8,7 +8,6 @@ mod stop;
 mod variables;
 
 use crate::args::Run;
-use crate::machine::Interpreted;
 use crate::session::{Asked, Session};
 use crate::{USAGE, output};
 use commands::Commands;
@@ -17,6 +16,7 @@ use places::{Found, Places};
 use staunch_host::{Map, Options, json_text};
 use staunch_ir::Program;
 use staunch_ir::interpret::debug::Debugger;
+use staunch_machine::Interpreted;
 use std::collections::HashSet;
 use variables::map_text;
 

@@ -1,11 +1,11 @@
 //! Bytes of variables, of read-only data and of code.
 
 use super::task::Task;
-use crate::machine;
 use staunch_host::{Map, retained};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_ir::symbols::map_text;
+
 use staunch_native::Measures;
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -37,7 +37,7 @@ pub struct Sizes {
 impl Sizes {
     pub fn of(program: &Program) -> Result<Self, String> {
         let layout = Layout::new(program);
-        let map: Map = machine::map(program)?;
+        let map: Map = staunch_machine::map(program)?;
         let wide = |at: usize| u64::try_from(at).unwrap_or(u64::MAX);
         let starts = program.instances.iter().zip(&layout.machine.instances);
         let instance = |(it, start): (&staunch_ir::Instance, &u64)| {

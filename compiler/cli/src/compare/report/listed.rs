@@ -1,11 +1,11 @@
 //! What is known of each counter, block and variable, as a list.
 
 use super::Report;
-use crate::compare::difference::accept::Accepted;
-use crate::compare::difference::kind::Kind;
-use crate::compare::difference::pitfall::OF_OTHERS;
-use crate::compare::findings::finding::{self, Finding, Findings};
-use crate::compare::search::trace::Trace;
+use staunch_compare::difference::accept::Accepted;
+use staunch_compare::difference::kind::Kind;
+use staunch_compare::difference::pitfall::OF_OTHERS;
+use staunch_compare::findings::finding::{self, Finding, Findings};
+use staunch_compare::search::trace::Trace;
 use staunch_ir::Location;
 use std::fmt::Write;
 

@@ -8,16 +8,17 @@ mod objects;
 mod table;
 
 use crate::args::{Compare, MessageFormat};
-use crate::compare::difference::accept::Accepted;
-use crate::compare::difference::pitfall::{self, Cause, Pitfall};
-use crate::compare::findings::finding::Findings;
-use crate::compare::other::missing::Missing;
-use crate::compare::pair::Pair;
-use crate::compare::search::world::World;
-use crate::compare::verdict::{Judged, Verdict, stimulus};
 use crate::session::Session;
 use crate::{NOT_FOUND, REJECTED, output};
 use rejection::Rejection;
+use staunch_compare::difference::accept::Accepted;
+use staunch_compare::difference::pitfall::{self, Cause, Pitfall};
+use staunch_compare::findings::finding::Findings;
+use staunch_compare::other::missing::Missing;
+use staunch_compare::pair::Pair;
+use staunch_compare::request::Request;
+use staunch_compare::search::world::World;
+use staunch_compare::verdict::{Judged, Verdict, stimulus};
 use staunch_frontend::Dialect;
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
@@ -25,6 +26,7 @@ use std::fmt::Write;
 pub struct Report<'s> {
     pub session: &'s Session,
     pub args: &'s Compare,
+    pub request: &'s Request,
     /// Lines that were rewritten for the other system: before and after.
     pub notes: Vec<(String, String)>,
     /// Names of pins that the move changes.
@@ -147,9 +149,9 @@ impl Report<'_> {
         }
         match judged.verdict {
             Verdict::Differs { rows, shortest, .. } => {
-                let shortest = shortest.then(|| judged.shortest(rows.len()));
+                let shortest = shortest.then(|| shortest_of(judged, rows.len()));
                 text += &self.table(pair, world, rows, shortest, cause, findings);
-                text += &judged.beyond();
+                text += &beyond(judged);
                 world.unfollowed.iter().for_each(|it| _ = writeln!(text, "Not followed: {it}"));
             }
             Verdict::Equal(why) => {
@@ -167,7 +169,7 @@ impl Report<'_> {
                 it.words
             );
         }
-        text += &judged.variants(cause.pitfall.is_some());
+        text += &variants(judged, cause.pitfall.is_some());
         if !matches!(judged.verdict, Verdict::Differs { .. }) {
             world.open.iter().chain(&world.in_common).for_each(|it| _ = writeln!(text, "{it}"));
         }
@@ -202,49 +204,44 @@ impl Report<'_> {
     }
 }
 
-impl Judged<'_> {
-    /// Where nothing shorter makes a difference: with another answer to what is left open, something may.
-    fn shortest(&self, scans: usize) -> &'static str {
-        match self.others.iter().any(|it| it.scans.is_some_and(|it| it < scans)) {
-            true => "no shorter sequence of these inputs shows a difference with these settings; with others, one does",
-            false => "no shorter sequence of these inputs shows a difference",
-        }
+/// Where nothing shorter makes a difference: with another answer to what is left open, something may.
+fn shortest_of(judged: &Judged, scans: usize) -> &'static str {
+    match judged.others.iter().any(|it| it.scans.is_some_and(|it| it < scans)) {
+        true => "no shorter sequence of these inputs shows a difference with these settings; with others, one does",
+        false => "no shorter sequence of these inputs shows a difference",
     }
+}
 
-    /// What the vendors' documents leave open, and what each answer comes to.
-    fn variants(&self, is_advised: bool) -> String {
-        if self.others.is_empty() {
-            return String::new();
-        }
-        let mut text = self.variant.questions().join(" ");
-        let _ = write!(text, " The verdict above is with {}.", self.variant.words());
-        for other in self.others {
-            let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
-        }
-        if is_advised && matches!(self.verdict, Verdict::Differs { .. }) {
-            let _ = write!(
-                text,
-                " The advice is valid with {}, but perhaps not with other settings.",
-                self.variant.words()
-            );
-        }
-        text.push('\n');
-        text
+/// What the vendors' documents leave open, and what each answer comes to.
+fn variants(judged: &Judged, is_advised: bool) -> String {
+    if judged.others.is_empty() {
+        return String::new();
     }
+    let mut text = judged.variant.questions().join(" ");
+    let _ = write!(text, " The verdict above is with {}.", judged.variant.words());
+    for other in judged.others {
+        let _ = write!(text, " With {}, {}.", other.variant.words(), other.words());
+    }
+    if is_advised && matches!(judged.verdict, Verdict::Differs { .. }) {
+        let _ =
+            write!(text, " The advice is valid with {}, but perhaps not with other settings.", judged.variant.words());
+    }
+    text.push('\n');
+    text
+}
 
-    /// What is said of the search past what is accepted.
-    fn beyond(&self) -> String {
-        match self.rest {
-            None | Some(Verdict::Differs { .. }) => String::new(),
-            Some(Verdict::Equal(why)) => {
-                format!("That is accepted. Apart from it and its consequences, the two are equal: {why}.\n")
-            }
-            Some(Verdict::NotFound { tried, left }) => format!(
-                "That is accepted. No other difference was found, but none is ruled out.\nTried: {}.\nNot tried: {}.\n",
-                tried.join(", "),
-                left.join("; ")
-            ),
+/// What is said of the search past what is accepted.
+fn beyond(judged: &Judged) -> String {
+    match judged.rest {
+        None | Some(Verdict::Differs { .. }) => String::new(),
+        Some(Verdict::Equal(why)) => {
+            format!("That is accepted. Apart from it and its consequences, the two are equal: {why}.\n")
         }
+        Some(Verdict::NotFound { tried, left }) => format!(
+            "That is accepted. No other difference was found, but none is ruled out.\nTried: {}.\nNot tried: {}.\n",
+            tried.join(", "),
+            left.join("; ")
+        ),
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::table::{Line, SHOWN};
 use super::{Report, number};
-use crate::compare::difference::accept::Accepted;
-use crate::compare::difference::pitfall::Cause;
-use crate::compare::findings::finding::{self, Finding, Findings};
-use crate::compare::pair::{Matched, Pair, Row};
-use crate::compare::search::world::World;
-use crate::compare::verdict::{Judged, Other, Verdict, stimulus};
+use staunch_compare::difference::accept::Accepted;
+use staunch_compare::difference::pitfall::Cause;
+use staunch_compare::findings::finding::{self, Finding, Findings};
+use staunch_compare::pair::{Matched, Pair, Row};
+use staunch_compare::search::world::World;
+use staunch_compare::verdict::{Judged, Other, Verdict, stimulus};
 use staunch_host::json_text as quoted;
 use std::fmt::Write;
 

@@ -1,11 +1,11 @@
 //! The trace as a picture: the same scans under each system, one above the other, drawn by the host.
 
-use crate::args::Compare;
-use crate::compare::pair::{Matched, Pair, Row};
-use crate::compare::search::trace::Trace;
-use crate::compare::search::world::World;
-use crate::compare::verdict::stimulus;
-use crate::{machine, output, scratch};
+use crate::{output, scratch};
+use staunch_compare::pair::{Matched, Pair, Row};
+use staunch_compare::request::Request;
+use staunch_compare::search::trace::Trace;
+use staunch_compare::search::world::World;
+use staunch_compare::verdict::stimulus;
 use staunch_host::{Error, Options};
 use std::fmt::Write;
 use std::path::Path;
@@ -19,12 +19,12 @@ const HEADING: f64 = 28.0;
 pub fn draw(
     pair: &mut Pair,
     world: &World,
-    args: &Compare,
+    request: &Request,
     path: &Path,
     (rows, trace): (&[Row], Option<&Trace>),
 ) -> Result<(), String> {
     let scratch = scratch::folder()?;
-    let stimulus = match (&args.stimulus, trace) {
+    let stimulus = match (&request.stimulus, trace) {
         (Some(given), _) => Some(given.clone()),
         (None, Some(trace)) => {
             let saved = scratch.path().join("trace.csv");
@@ -39,14 +39,14 @@ pub fn draw(
         let svg = scratch.path().join(format!("{side}.svg"));
         let options = Options {
             scans: u64::try_from(rows.len()).ok(),
-            cycle: args.cycle.as_deref().map(staunch_host::parse_duration).transpose()?,
+            cycle: request.cycle,
             stimulus: stimulus.clone(),
             trace: Some(svg.clone()),
             vars: Some(variables(pair, side, &differences)),
             quiet: true,
             ..Options::default()
         };
-        let map = machine::map(&pair.sides[side].program)?;
+        let map = staunch_machine::map(&pair.sides[side].program)?;
         match staunch_host::run(pair.sides[side].machine(), &map, &options) {
             // A fault ends the run, and the picture.
             Ok(_) | Err(Error::Fault { .. }) => {}

@@ -1,7 +1,7 @@
 //! Why a program cannot be compared: the other system rejects it.
 
-use crate::compare::difference::pitfall::Pitfall;
 use crate::session::Session;
+use staunch_compare::difference::pitfall::Pitfall;
 use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
 use staunch_ir::Elementary;
 use staunch_runtime::{BlockInfo, KeptCount, PinRole};

@@ -1,11 +1,11 @@
 //! A difference as a table: the scans that show it, with the inputs that change and the variables that differ.
 
 use super::Report;
-use crate::compare::difference::pitfall::Cause;
-use crate::compare::findings::finding::Findings;
-use crate::compare::findings::reason;
-use crate::compare::pair::{Matched, Pair, Row};
-use crate::compare::search::world::World;
+use staunch_compare::difference::pitfall::Cause;
+use staunch_compare::findings::finding::Findings;
+use staunch_compare::findings::reason;
+use staunch_compare::pair::{Matched, Pair, Row};
+use staunch_compare::search::world::World;
 use staunch_frontend::Sources;
 use staunch_host::Event;
 use std::fmt::Write;
