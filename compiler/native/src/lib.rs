@@ -41,6 +41,7 @@ mod case;
 mod expression;
 mod external;
 mod index;
+mod numbers;
 mod place;
 mod seen;
 mod text;
