@@ -55,6 +55,8 @@ mod attempt;
 mod fault;
 mod memory;
 
+mod debug;
+
 mod control;
 mod entry;
 mod program;
