@@ -3,7 +3,7 @@
 use crate::args::{Build, BuildBackend, Emit, Opt};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart, header, link, linker, output, report, systemd, target};
+use crate::{REJECTED, apart, declared, header, link, linker, output, report, systemd, target};
 use staunch_build::listing;
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
@@ -49,6 +49,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
             if hold(session, &program, args, target)? == REJECTED {
                 return Ok(REJECTED);
             }
+            let program = if args.debug { declared::named(&session.sources, &program) } else { program };
             compile(&program, args, target, &out)?;
         }
     }
@@ -63,9 +64,10 @@ fn runnable(session: &Session, args: &Build) -> Result<Program, String> {
     program.ok_or_else(|| "the program was rejected".to_owned())
 }
 
-/// Holds the budgets of the project file.
+/// Holds the budgets of the project file. They are those of code that is used, and not of code for a debugger.
 fn hold(session: &Session, program: &Program, args: &Build, target: Option<&str>) -> Result<u8, String> {
     match args.backend {
+        BuildBackend::Native if args.debug => Ok(0),
         BuildBackend::Native => report::hold(session, program, &machine(args, target)?),
         BuildBackend::Rust if report::has_budget(&session.project) => {
             let file = session.project.file();

@@ -145,9 +145,9 @@ impl Target {
 }
 
 /// For code that runs here and now, with all that this machine can do.
-pub(crate) fn native_isa() -> Result<OwnedTargetIsa, Error> {
+pub(crate) fn native_isa(aim: Aim) -> Result<OwnedTargetIsa, Error> {
     let builder = cranelift_native::builder().map_err(|error| Error::Target(error.to_owned()))?;
-    builder.finish(flags("false", Aim::Speed)).map_err(|error| Error::Output(error.to_string()))
+    builder.finish(flags("false", aim)).map_err(|error| Error::Output(error.to_string()))
 }
 
 /// The same machine and settings, but without optimisation.

@@ -16,6 +16,8 @@ pub(crate) struct Entries<'a> {
     pub(crate) dwarf: DwarfUnit,
     /// The entries of types.
     pub(crate) types: HashMap<Type, UnitEntryId>,
+    /// Those of pointers, by what they lead to.
+    pub(crate) pointers: HashMap<Type, UnitEntryId>,
     /// The word that leads to the state.
     pub(crate) state: Address,
     /// The code that is described.
@@ -24,7 +26,15 @@ pub(crate) struct Entries<'a> {
 
 impl<'a> Entries<'a> {
     pub(crate) fn new(program: &'a Program, layout: &'a Layout, state: Address) -> Self {
-        Self { program, layout, dwarf: DwarfUnit::new(ENCODING), types: HashMap::new(), state, ranges: Vec::new() }
+        Self {
+            program,
+            layout,
+            dwarf: DwarfUnit::new(ENCODING),
+            types: HashMap::new(),
+            pointers: HashMap::new(),
+            state,
+            ranges: Vec::new(),
+        }
     }
 
     pub(crate) fn encoding() -> Encoding {

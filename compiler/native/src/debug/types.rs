@@ -39,10 +39,14 @@ impl Entries<'_> {
 
     /// A pointer of the machine to a variable.
     pub(crate) fn pointer_to(&mut self, ty: Type) -> UnitEntryId {
+        if let Some(known) = self.pointers.get(&ty) {
+            return *known;
+        }
         let target = self.type_of(ty);
         let id = self.add(self.root(), DW_TAG_pointer_type);
         self.set(id, DW_AT_byte_size, AttributeValue::Udata(8));
         self.set_type(id, target);
+        self.pointers.insert(ty, id);
         id
     }
 

@@ -3,14 +3,17 @@
 use super::entries::{Entries, is_declared};
 use super::notes::Homes;
 use gimli::constants::{
-    DW_AT_artificial, DW_AT_byte_size, DW_AT_location, DW_OP_and, DW_OP_shr, DW_OP_stack_value,
-    DW_TAG_formal_parameter, DW_TAG_structure_type, DW_TAG_variable, DwTag,
+    DW_AT_artificial, DW_AT_byte_size, DW_AT_location, DW_OP_and, DW_OP_dup, DW_OP_minus, DW_OP_plus, DW_OP_shr,
+    DW_OP_stack_value, DW_TAG_formal_parameter, DW_TAG_structure_type, DW_TAG_variable, DwTag,
 };
-use gimli::write::{AttributeValue, Expression, UnitEntryId};
+use gimli::write::{Address, AttributeValue, Expression, UnitEntryId};
+use staunch_ir::layout::Layout;
 use staunch_ir::loops::constant_position;
 use staunch_ir::{
-    FieldId, HELD_PROGRAM, LocalId, Mode, Place, Projection, Root, Routine, RoutineKind, Type, Variable, View,
+    FieldId, HELD_PROGRAM, LocalId, Mode, Place, Projection, RefKind, RefType, Root, Routine, RoutineKind, Type,
+    Variable, View,
 };
+use staunch_runtime::reference::ORIGIN;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Where the storage begins that places of one root are in.
@@ -60,7 +63,8 @@ impl Entries<'_> {
         }
         for (name, list) in &lists.lists {
             let ty = self.list(name, list);
-            self.located(self.root(), DW_TAG_variable, (name, ty), Base::State.at(0, self));
+            let start = list.extent(self.layout).0;
+            self.located(self.root(), DW_TAG_variable, (name, ty), Base::State.at(start, self));
         }
     }
 
@@ -75,22 +79,21 @@ impl Entries<'_> {
     }
 
     fn global(&mut self, name: &str, ty: Type, offset: u64) {
-        let ty = self.type_of(ty);
-        self.located(self.root(), DW_TAG_variable, (name, ty), Base::State.at(offset, self));
+        self.stored(self.root(), DW_TAG_variable, (name, ty), (Base::State, offset));
     }
 
-    /// A list as a structure, whose members are where the variables are in the state.
+    /// A list as a structure, from the first of its variables on.
     fn list(&mut self, name: &str, list: &Listed) -> UnitEntryId {
         let id = self.add_named(self.root(), DW_TAG_structure_type, name);
-        let size = AttributeValue::Udata(self.layout.machine.size);
-        self.set(id, DW_AT_byte_size, size);
+        let (start, end) = list.extent(self.layout);
+        self.set(id, DW_AT_byte_size, AttributeValue::Udata(end - start));
         for (name, (ty, offset)) in &list.variables {
             let ty = self.type_of(*ty);
-            self.member(id, name, ty, *offset);
+            self.member(id, name, ty, offset - start);
         }
         for (name, inner) in &list.lists {
             let ty = self.list(name, inner);
-            self.member(id, name, ty, 0);
+            self.member(id, name, ty, inner.extent(self.layout).0 - start);
         }
         id
     }
@@ -140,16 +143,16 @@ impl Entries<'_> {
                 (Mode::Reference, None) => continue,
             };
             if is_declared(&param.name) && seen.insert(param.name.to_ascii_uppercase()) {
-                let ty = self.type_of(param.ty);
-                self.located(function, DW_TAG_formal_parameter, (&param.name, ty), base.at(0, self));
+                self.stored(function, DW_TAG_formal_parameter, (&param.name, param.ty), (base, 0));
             }
         }
+        // The bounds of an `ARRAY[*]` have names of the compiler's.
+        params.extend(routine.params.iter().flat_map(|it| &it.bounds).flat_map(|it| [it.0, it.1]));
         for (at, local) in routine.locals.iter().enumerate() {
             let is_own = is_declared(&local.name) && !params.contains(&LocalId::next(at));
             if is_own && seen.insert(local.name.to_ascii_uppercase()) {
-                let ty = self.type_of(local.ty);
-                let location = Base::Frame(homes.locals[at]).at(0, self);
-                self.located(function, DW_TAG_variable, (&local.name, ty), location);
+                let place = (Base::Frame(homes.locals[at]), 0);
+                self.stored(function, DW_TAG_variable, (&local.name, local.ty), place);
             }
         }
         seen
@@ -170,13 +173,31 @@ impl Entries<'_> {
 
     fn variable(&mut self, parent: UnitEntryId, tag: DwTag, it: &Variable, scope: Option<(&Routine, &Homes)>) {
         let Some((base, offset)) = self.place(&it.place, scope).filter(|_| is_declared(&it.name)) else { return };
-        let (ty, location) = match it.view {
-            None => (it.place.ty, base.at(offset, self)),
-            Some(View { ty: Type::BOOL, bit, .. }) => (Type::BOOL, base.bit(offset, bit, self)),
-            Some(View { ty, bit, .. }) => (ty, base.at(offset + bit / 8, self)),
+        match it.view {
+            None => self.stored(parent, tag, (&it.name, it.place.ty), (base, offset)),
+            Some(View { ty: Type::BOOL, bit, .. }) => {
+                let ty = self.type_of(Type::BOOL);
+                self.located(parent, tag, (&it.name, ty), base.bit(offset, bit, self));
+            }
+            Some(View { ty, bit, .. }) => self.stored(parent, tag, (&it.name, ty), (base, offset + bit / 8)),
+        }
+    }
+
+    /// A variable of a type. What a REFERENCE TO leads to has its name, and other references are pointers.
+    fn stored(&mut self, parent: UnitEntryId, tag: DwTag, (name, ty): (&str, Type), (base, offset): (Base, u64)) {
+        let at = base.at(offset, self);
+        let Type::Reference(reference) = ty else {
+            let ty = self.type_of(ty);
+            self.located(parent, tag, (name, ty), at);
+            return;
         };
-        let ty = self.type_of(ty);
-        self.located(parent, tag, (&it.name, ty), location);
+        let RefType { kind, target } = self.program.references[reference.index()];
+        let (ty, location) = match kind {
+            RefKind::ReferenceTo => (self.type_of(target), led_to(at, self.state)),
+            RefKind::RefTo | RefKind::PointerTo => (self.pointer_to(target), pointer(at, self.state)),
+            RefKind::Interface(_) => (self.type_of(ty), at),
+        };
+        self.located(parent, tag, (name, ty), location);
     }
 
     /// Where a variable is, from where its root is.
@@ -208,6 +229,39 @@ fn base(root: Root, homes: &Homes) -> Option<Base> {
         Root::Local(id) => Base::Frame(*homes.locals.get(id.index())?),
         Root::Param(id) => Base::Through((*homes.params.get(id.index())?)?),
     })
+}
+
+/// Where the reference leads that is at a place.
+fn led_to(mut at: Expression, state: Address) -> Expression {
+    at.op_deref();
+    followed(&mut at, state);
+    at
+}
+
+/// The same as a pointer; null leads nowhere.
+fn pointer(mut at: Expression, state: Address) -> Expression {
+    at.op_deref();
+    at.op(DW_OP_dup);
+    let leads = at.op_bra();
+    let end = at.op_skip();
+    let next = at.next_index();
+    at.set_target(leads, next);
+    followed(&mut at, state);
+    let next = at.next_index();
+    at.set_target(end, next);
+    at.op(DW_OP_stack_value);
+    at
+}
+
+/// The address in a reference is that in the state.
+fn followed(at: &mut Expression, state: Address) {
+    at.op_constu(u64::from(u32::MAX));
+    at.op(DW_OP_and);
+    at.op_constu(u64::from(ORIGIN));
+    at.op(DW_OP_minus);
+    at.op_addr(state);
+    at.op_deref();
+    at.op(DW_OP_plus);
 }
 
 impl Base {
@@ -244,6 +298,14 @@ impl Base {
 }
 
 impl Listed {
+    /// From the first byte of its variables to the end of the last.
+    fn extent(&self, layout: &Layout) -> (u64, u64) {
+        let own = self.variables.values().map(|(ty, offset)| (*offset, offset + layout.size(*ty)));
+        let inner = self.lists.values().map(|it| it.extent(layout));
+        let all = own.chain(inner).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+        all.unwrap_or_default()
+    }
+
     fn add(&mut self, path: &str, place: (Type, u64)) {
         match path.split_once('.') {
             None => {
