@@ -11,7 +11,7 @@ use staunch_ir::layout::Layout;
 use staunch_ir::loops::constant_position;
 use staunch_ir::{
     FieldId, HELD_PROGRAM, LocalId, Mode, Place, Projection, RefKind, RefType, Root, Routine, RoutineKind, Type,
-    Variable, View,
+    Variable, View, visit,
 };
 use staunch_runtime::reference::ORIGIN;
 use std::collections::{BTreeMap, BTreeSet};
@@ -146,10 +146,9 @@ impl Entries<'_> {
                 self.stored(function, DW_TAG_formal_parameter, (&param.name, param.ty), (base, 0));
             }
         }
-        // The bounds of an `ARRAY[*]` have names of the compiler's.
-        params.extend(routine.params.iter().flat_map(|it| &it.bounds).flat_map(|it| [it.0, it.1]));
         for (at, local) in routine.locals.iter().enumerate() {
-            let is_own = is_declared(&local.name) && !params.contains(&LocalId::next(at));
+            let id = LocalId::next(at);
+            let is_own = is_declared(&local.name) && !params.contains(&id) && !was_bound(routine, id);
             if is_own && seen.insert(local.name.to_ascii_uppercase()) {
                 let place = (Base::Frame(homes.locals[at]), 0);
                 self.stored(function, DW_TAG_variable, (&local.name, local.ty), place);
@@ -220,6 +219,20 @@ impl Entries<'_> {
         }
         Some((base, offset))
     }
+}
+
+/// Whether a local has stood for a bound of an `ARRAY[*]`, which is a constant now: `list_low`.
+fn was_bound(routine: &Routine, id: LocalId) -> bool {
+    let name = &routine.locals[id.index()].name;
+    let mut arrays = routine.params.iter().filter(|it| matches!(it.ty, Type::Array(_)));
+    if !arrays.any(|it| name.strip_prefix(&it.name).is_some_and(|it| it.starts_with('_'))) {
+        return false;
+    }
+    let mut is_used = routine.result == Some(id);
+    visit::statements(&routine.body, &mut |it| {
+        visit::accesses(it, &mut |place, _| is_used |= place.root == Root::Local(id));
+    });
+    !is_used
 }
 
 fn base(root: Root, homes: &Homes) -> Option<Base> {
