@@ -26,7 +26,7 @@ pub fn object(program: &Program, target: &Target) -> Result<Vec<u8>, Error> {
 /// If a function is too large for the code generator.
 pub fn object_named(program: &Program, target: &Target, prefix: &str) -> Result<Vec<u8>, Error> {
     if target.is_for_debugging() && !target.is_elf() {
-        return Err(Error::Target(format!("debug information is made for ELF targets, and not for {}", target.name())));
+        return Err(Error::Target(format!("`--debug` makes DWARF for Linux, and not for {}", target.name())));
     }
     let mut module = module(target)?;
     let emitted = program::emit_named(program, &mut module, Also::Nothing, prefix)?;

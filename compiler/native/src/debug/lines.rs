@@ -5,7 +5,7 @@ use super::notes::{Compiled, Row};
 use gimli::write::{Address, FileId, LineString};
 use staunch_ir::{Location, Program};
 
-/// The paths of the sources, as the user has named them. What is relative is so to the folder of the build.
+/// The paths of the sources, as the user has named them. Relative paths begin at the folder of the build.
 pub(crate) fn files(entries: &mut Entries<'_>, program: &Program) -> Vec<FileId> {
     let lines = &mut entries.dwarf.unit.line_program;
     let folder = lines.default_directory();

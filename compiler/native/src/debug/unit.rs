@@ -15,8 +15,8 @@ use gimli::write::{
     Address, AttributeValue, Expression, FileId, FrameTable, LineProgram, LineString, Range, RangeList, Sections,
 };
 use gimli::{AArch64, LineEncoding, Register, RiscV, X86_64};
-use staunch_ir::Program;
 use staunch_ir::layout::Layout;
+use staunch_ir::{Program, StructId, Type};
 use target_lexicon::Architecture;
 
 /// Relative paths are seen from where the debugger is started.
@@ -35,6 +35,10 @@ pub(crate) fn write(
     let layout = Layout::new(program);
     let mut entries = Entries::new(program, &layout, symbol(notes.functions.len()));
     let files = begin(&mut entries);
+    // A structure is after those that it contains, so that none leads to a long chain of others.
+    for at in 0..program.structs.len() {
+        entries.type_of(Type::Struct(StructId::next(at)));
+    }
     // A PROGRAM's instance may have its name: a debugger takes the first of the two.
     entries.of_program();
     for (at, function) in notes.functions.iter().enumerate() {
