@@ -7,7 +7,7 @@ use staunch_host::{Compiled, Domain, Error, Machine, Map, Options, run as host_r
 use staunch_ir::Program;
 use staunch_ir::interpret::{Interpreter, Stop};
 use staunch_ir::symbols::map_text;
-use staunch_native::Jit;
+use staunch_native::{Aim, Jit};
 use staunch_runtime::Context;
 use std::fs;
 use std::path::PathBuf;
@@ -20,10 +20,15 @@ pub enum Executor {
     Rust,
     /// What the native back end made, in memory.
     Native,
+    /// The same, made for a debugger.
+    Debugged,
 }
 
 impl Executor {
     pub const ALL: [Self; 3] = [Self::Interpreter, Self::Rust, Self::Native];
+
+    /// These, and what they do under a debugger.
+    pub const EVERY: [Self; 4] = [Self::Interpreter, Self::Rust, Self::Native, Self::Debugged];
 
     /// The program in its initial state. `module` is its name among the generated modules.
     pub fn machine<'p>(self, program: &'p Program, module: &str) -> Result<Box<dyn Machine + 'p>, String> {
@@ -37,13 +42,8 @@ impl Executor {
                 let machine = generated::machine(module, &text);
                 Box::new(machine.ok_or("this program has no generated Rust: is the build up to date?")?)
             }
-            Self::Native => {
-                let jit = Jit::new(program).map_err(|error| error.to_string())?;
-                // SAFETY: the code was made of the program that the map describes, and is kept as
-                // long as the machine that calls it.
-                let compiled = unsafe { Compiled::new(&map(program)?, jit.init, jit.scan) };
-                Box::new(Native { compiled, _jit: jit })
-            }
+            Self::Native => Box::new(Native::new(program, Aim::Speed)?),
+            Self::Debugged => Box::new(Native::new(program, Aim::Debugging)?),
         })
     }
 }
@@ -86,6 +86,16 @@ struct Native {
     /// Before the code that it calls: it goes first.
     compiled: Compiled,
     _jit: Jit,
+}
+
+impl Native {
+    fn new(program: &Program, aim: Aim) -> Result<Self, String> {
+        let jit = Jit::aiming_at(program, aim).map_err(|error| error.to_string())?;
+        // SAFETY: the code was made of the program that the map describes, and is kept as
+        // long as the machine that calls it.
+        let compiled = unsafe { Compiled::new(&map(program)?, jit.init, jit.scan) };
+        Ok(Self { compiled, _jit: jit })
+    }
 }
 
 impl Machine for Native {

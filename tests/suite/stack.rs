@@ -5,7 +5,7 @@ use staunch_frontend::{Options, Source, Sources};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use staunch_ir::stack;
-use staunch_native::{Target, frames};
+use staunch_native::{Aim, Target, frames};
 use staunch_tests::case::{self, Pin};
 use staunch_tests::cases;
 use staunch_witness::generate;
@@ -78,10 +78,11 @@ fn said(program: &Program) -> Vec<u64> {
 
 fn compare(program: &Program, name: &str) -> usize {
     let said = said(program);
-    for target in TARGETS {
-        let found = frames(program, &Target::parse(target).unwrap()).unwrap();
+    let targets = TARGETS.iter().flat_map(|it| [Aim::Speed, Aim::Debugging].map(|aim| (it, aim)));
+    for (target, aim) in targets {
+        let found = frames(program, &Target::parse(target).unwrap().aiming_at(aim)).unwrap();
         for ((said, found), routine) in said.iter().zip(&found).zip(&program.routines) {
-            assert!(said >= found, "{name}, {}: {found} bytes on {target}, {said} are said", routine.name);
+            assert!(said >= found, "{name}, {}: {found} bytes on {target} for {aim:?}, {said} are said", routine.name);
         }
     }
     said.len() * TARGETS.len()

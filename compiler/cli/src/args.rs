@@ -184,6 +184,9 @@ pub struct Build {
     /// What compiled code is made for; speed without it
     #[arg(long, value_enum)]
     pub opt: Option<Opt>,
+    /// Debug information for gdb, and code that it can follow line by line; with `--emit obj`, `lib` or `exe`
+    #[arg(short = 'g', long)]
+    pub debug: bool,
     /// With `--emit rust`: make the variables readable by name at run time, with a table and a function
     #[arg(long)]
     pub names: bool,

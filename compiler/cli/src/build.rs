@@ -3,10 +3,11 @@
 use crate::args::{Build, BuildBackend, Emit, Opt};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart, header, link, linker, output, report, systemd, target};
+use crate::{REJECTED, apart, declared, header, link, linker, output, report, systemd, target};
 use staunch_build::listing;
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
+use staunch_native::{Aim, Target};
 use staunch_rust::State;
 use std::path::{Path, PathBuf};
 
@@ -17,6 +18,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
     if args.opt.is_some() && !matches!(args.emit, Emit::Obj | Emit::Lib | Emit::Exe) {
         return Err("`--opt` is for compiled code: `--emit obj`, `lib` or `exe`".to_owned());
     }
+    check_debug(args)?;
     check_prefix(args)?;
     let Some(program) = session.program() else { return Ok(REJECTED) };
     let target = args.target.as_deref().map(full_name);
@@ -47,6 +49,7 @@ pub fn build(session: &Session, args: &Build) -> Result<u8, String> {
             if hold(session, &program, args, target)? == REJECTED {
                 return Ok(REJECTED);
             }
+            let program = if args.debug { declared::named(&session.sources, &program) } else { program };
             compile(&program, args, target, &out)?;
         }
     }
@@ -61,10 +64,11 @@ fn runnable(session: &Session, args: &Build) -> Result<Program, String> {
     program.ok_or_else(|| "the program was rejected".to_owned())
 }
 
-/// Holds the budgets of the project file.
+/// Holds the budgets of the project file. They are those of code that is used, and not of code for a debugger.
 fn hold(session: &Session, program: &Program, args: &Build, target: Option<&str>) -> Result<u8, String> {
     match args.backend {
-        BuildBackend::Native => report::hold(session, program, &target::of(target, args.opt.unwrap_or_default())?),
+        BuildBackend::Native if args.debug => Ok(0),
+        BuildBackend::Native => report::hold(session, program, &machine(args, target)?),
         BuildBackend::Rust if report::has_budget(&session.project) => {
             let file = session.project.file();
             Err(format!(
@@ -78,7 +82,7 @@ fn hold(session: &Session, program: &Program, args: &Build, target: Option<&str>
 fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
     let opt = args.opt.unwrap_or_default();
     match args.backend {
-        BuildBackend::Native => native(program, args, target, opt, out),
+        BuildBackend::Native => native(program, args, target, out),
         BuildBackend::Rust if !program.externals().is_empty() => Err(
             "`{external}` POUs are implemented by a crate around the emitted Rust: use `--emit rust`, or `--backend native` \
              and implement them in C"
@@ -86,6 +90,22 @@ fn compile(program: &Program, args: &Build, target: Option<&str>, out: &Path) ->
         ),
         BuildBackend::Rust => rust(program, args.emit, target, opt, out),
     }
+}
+
+fn check_debug(args: &Build) -> Result<(), String> {
+    if !args.debug {
+        return Ok(());
+    }
+    if !matches!(args.emit, Emit::Obj | Emit::Lib | Emit::Exe) {
+        return Err("`--debug` is for compiled code: `--emit obj`, `lib` or `exe`".to_owned());
+    }
+    if args.backend == BuildBackend::Rust {
+        return Err("`--debug` is for `--backend native`".to_owned());
+    }
+    if args.opt.is_some() {
+        return Err("`--debug` makes code as it is written: it does not go with `--opt`".to_owned());
+    }
+    Ok(())
 }
 
 /// Two programs that are linked together need symbols of their own.
@@ -107,8 +127,14 @@ fn check_prefix(args: &Build) -> Result<(), String> {
     }
 }
 
-fn native(program: &Program, args: &Build, target: Option<&str>, opt: Opt, out: &Path) -> Result<(), String> {
-    let machine = target::of(target, opt)?;
+/// The machine that native code is made for, and what for.
+fn machine(args: &Build, target: Option<&str>) -> Result<Target, String> {
+    let target = target::of(target, args.opt.unwrap_or_default())?;
+    Ok(if args.debug { target.aiming_at(Aim::Debugging) } else { target })
+}
+
+fn native(program: &Program, args: &Build, target: Option<&str>, out: &Path) -> Result<(), String> {
+    let machine = machine(args, target)?;
     let object = staunch_native::object_named(program, &machine, args.prefix()).map_err(|it| it.to_string())?;
     match args.emit {
         Emit::Lib => link::static_library(&object, args.prefix(), target, out),

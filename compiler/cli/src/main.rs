@@ -8,6 +8,8 @@ mod other_dialects;
 mod remotes;
 mod session;
 
+mod declared;
+
 mod cache;
 mod toolchain;
 

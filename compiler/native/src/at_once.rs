@@ -16,8 +16,8 @@ const MOST_IN_A_ROUTINE: usize = 8192;
 impl<'p> Function<'_, 'p> {
     /// How many turns the loop takes at once; `None` where it takes them one by one.
     pub(crate) fn copies(&mut self, body: &[Statement], continuing: &[Statement]) -> Option<usize> {
-        // A fault among copies would leave the turns that were had.
-        if self.module.handles_faults {
+        // A fault among copies would leave the turns that were had, and a debugger shows a statement at one place.
+        if self.module.handles_faults || self.noted.is_some() {
             return None;
         }
         let callee_does = |callee: RoutineId| self.module.effects(callee).turns;
@@ -33,6 +33,9 @@ impl<'p> Function<'_, 'p> {
 
     /// Whether a loop's body may be there twice.
     pub(crate) fn may_copy(&mut self, body: &[Statement], continuing: &[Statement]) -> bool {
+        if self.noted.is_some() {
+            return false;
+        }
         let callee_does = |callee: RoutineId| self.module.effects(callee).turns;
         let size = turns::size_of_single(body, continuing, &callee_does).filter(|it| *it <= 2 * ENOUGH);
         let Some(made) = size.map(|it| self.copied + it).filter(|it| *it <= MOST_IN_A_ROUTINE) else { return false };

@@ -61,6 +61,7 @@ fn of_init(signature: &mut Signature) {
 /// `staunch_init(state)`: zeros, and over them the parts of the initial image that are not.
 fn init(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
     let (state, config) = (values[0], module.output.target_config());
+    module.note_state(builder, state);
     let image = module.layout.image(module.program);
     let size = i64::try_from(image.len()).expect("verified IR: sizes are within 1 GiB");
     let size = builder.ins().iconst(POINTER, size);
@@ -93,6 +94,7 @@ fn parts(image: &[u8]) -> Vec<(usize, usize)> {
 /// instance's does nothing.
 fn scan(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>, values: &[clif::Value]) {
     let &[state, context, instance] = values else { unreachable!("as many as declared above") };
+    module.note_state(builder, state);
     let done = builder.create_block();
     builder.append_block_param(done, CODE);
     Scan { module, builder, state, context, done }.starts();

@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::address::Address;
 use crate::count::{Marks, Repeats};
+use crate::debug::noted::Noted;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::scan::{Begun, start_of_scan};
 use crate::seen::Seen;
@@ -60,6 +61,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) exit: clif::Block,
     pub(crate) faults: Faults,
     pub(crate) temporaries: Temporaries,
+    /// Where code is made for debugging.
+    pub(crate) noted: Option<Noted>,
     functions: HashMap<FuncId, clif::FuncRef>,
     data: HashMap<DataId, clif::GlobalValue>,
     result: Option<(LocalId, Type)>,
@@ -186,6 +189,7 @@ impl<'a, 'p> Function<'a, 'p> {
             false => Start::new(builder.block_params(entry), module.program, routine, effects),
         };
         let exit = builder.create_block();
+        let noted = module.notes.is_some().then(|| Noted::new(id));
         let mut function = Self {
             module,
             builder,
@@ -211,19 +215,23 @@ impl<'a, 'p> Function<'a, 'p> {
             exit,
             faults: Faults::default(),
             temporaries: Temporaries::default(),
+            noted,
             functions: HashMap::new(),
             data: HashMap::new(),
             result: routine.result.zip(result_type(routine)),
         };
         function.place_locals(effects);
+        function.note_start();
         function.start_locals();
         function
     }
 
     fn place_locals(&mut self, effects: &Effects) {
         let mut variables = 0;
+        // A debugger finds all of them in the frame.
+        let is_seen = self.noted.is_some();
         for (local, is_referred) in self.routine.locals.iter().zip(&effects.borrowed) {
-            let repr = self.module.program.repr(local.ty).filter(|_| !is_referred);
+            let repr = self.module.program.repr(local.ty).filter(|_| !is_referred && !is_seen);
             let home = match repr {
                 Some(repr) if variables < MAX_VARIABLES => {
                     variables += 1;
@@ -302,6 +310,7 @@ impl<'a, 'p> Function<'a, 'p> {
         }
         self.builder.switch_to_block(self.exit);
         self.builder.seal_block(self.exit);
+        self.note_end();
         let result = self.result();
         let mut values = Vec::new();
         if effects.faults {
@@ -312,6 +321,9 @@ impl<'a, 'p> Function<'a, 'p> {
         self.close_faults();
         self.close_temporaries();
         self.builder.finalize(self.module.output.target_config());
+        if let Some(notes) = &mut self.module.notes {
+            notes.noted = self.noted;
+        }
         self.marks
     }
 

@@ -77,7 +77,7 @@ const INLINE: &[(&str, Emit)] = &[
 
 /// What emits an instruction of the block at `place`.
 pub(crate) fn find(place: &Place, instruction: usize, aim: Aim) -> Option<Emit> {
-    if aim == Aim::Size {
+    if aim != Aim::Speed {
         return None;
     }
     let symbol = block_info(place).instructions[instruction].symbol;

@@ -1,8 +1,9 @@
 //! Code in memory, for running at once, with the runtime that is linked into this process.
 
+use crate::Error;
 use crate::entry::EntryPoints;
 use crate::program::{self, Also};
-use crate::{Error, target};
+use crate::target::{self, Aim};
 use core::ffi::c_int;
 use core::fmt;
 use cranelift_jit::{ArenaMemoryProvider, JITBuilder, JITModule};
@@ -36,10 +37,18 @@ impl Jit {
     /// If this machine is not supported, a function is too large for it, or something is called that is
     /// implemented outside.
     pub fn new(program: &Program) -> Result<Self, Error> {
+        Self::aiming_at(program, Aim::Speed)
+    }
+
+    /// The same, with code for that aim.
+    ///
+    /// # Errors
+    /// As above.
+    pub fn aiming_at(program: &Program, aim: Aim) -> Result<Self, Error> {
         if let Some(external) = program.externals().first() {
             return Err(Error::External(external.name.clone()));
         }
-        let isa = target::native_isa()?;
+        let isa = target::native_isa(aim)?;
         let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
         staunch_runtime_abi::for_each_symbol(&mut |name, address| {
             builder.symbol(name, address);

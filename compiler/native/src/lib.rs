@@ -58,6 +58,8 @@ mod attempt;
 mod fault;
 mod memory;
 
+mod debug;
+
 mod control;
 mod entry;
 mod program;

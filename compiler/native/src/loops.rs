@@ -147,6 +147,7 @@ impl<'p> Function<'_, 'p> {
         }
         if self.innermost().is_continued {
             self.go_on_in(frame.next);
+            self.note_turn(control);
             if self.end_of_turn(control, continuing) == Flow::Continues {
                 let end = self.natural_end(control, frame.after);
                 self.further_turn(control, turn, end);
@@ -156,6 +157,15 @@ impl<'p> Function<'_, 'p> {
         }
         self.builder.seal_block(turn);
         self.loops.pop().expect("pushed above").is_left
+    }
+
+    /// What ends a turn belongs to the loop's head.
+    fn note_turn(&mut self, control: &Control<'p>) {
+        match control {
+            Control::Count(running) => self.note_statement(running.at),
+            Control::Unless(leave) => self.note_statement(leave.at),
+            Control::Always => {}
+        }
     }
 
     pub(crate) fn further_turn(&mut self, control: &Control<'p>, turn: clif::Block, after: clif::Block) {

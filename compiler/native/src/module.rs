@@ -1,6 +1,7 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
 use crate::count::{Marks, Numbered, is_marked, sizes};
+use crate::debug::notes::Notes;
 use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
 use crate::measure::{Made, Measures, measures};
@@ -10,8 +11,8 @@ use crate::unused::drop_unused_loads;
 use crate::{Error, signature, target};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
-use cranelift_codegen::ir::Signature;
-use cranelift_frontend::FunctionBuilderContext;
+use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Signature, Value};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
 use staunch_ir::effects::Effects;
 use staunch_ir::layout::{Layout, usize_of};
@@ -71,6 +72,8 @@ pub(crate) struct ModuleEmitter<'p> {
     pub(crate) listing: Option<String>,
     /// Whether the instructions of functions are to be counted.
     pub(crate) counts: bool,
+    /// What a debugger is to know, where code is made for one.
+    pub(crate) notes: Option<Notes>,
 }
 
 /// Working memory of the code generator, kept from function to function.
@@ -106,6 +109,7 @@ impl<'p> ModuleEmitter<'p> {
             made: Vec::with_capacity(program.routines.len()),
             listing: None,
             counts: false,
+            notes: None,
         }
     }
 
@@ -237,6 +241,26 @@ impl<'p> ModuleEmitter<'p> {
         Ok(())
     }
 
+    /// Declares the word that leads a debugger to the state.
+    pub(crate) fn declare_notes(&mut self) -> Result<(), Error> {
+        let name = self.symbol("debug_state");
+        let state = self.output.declare_data(&name, Linkage::Local, true, false)?;
+        let mut data = DataDescription::new();
+        data.set_align(8);
+        data.define_zeroinit(8);
+        self.output.define_data(state, &data)?;
+        self.notes = Some(Notes::new(state, self.output.isa()));
+        Ok(())
+    }
+
+    /// Stores where the state is, at the start of an entry point.
+    pub(crate) fn note_state(&mut self, builder: &mut FunctionBuilder<'_>, state: Value) {
+        let Some(notes) = &self.notes else { return };
+        let word = self.output.declare_data_in_func(notes.state, builder.func);
+        let word = builder.ins().symbol_value(signature::POINTER, word);
+        builder.ins().store(MemFlagsData::trusted(), state, word, 0);
+    }
+
     /// Makes the code of the routine in `context`, with that of small ones in place of their calls.
     pub(crate) fn define_routine(
         &mut self,
@@ -287,6 +311,9 @@ impl<'p> ModuleEmitter<'p> {
         };
         let made = Made::of(context, id, name);
         self.made.push(if self.counts { made.counted(context, is_marked.then_some(&marks)) } else { made });
+        if let Some(notes) = &mut self.notes {
+            notes.add(context, id, self.output.isa());
+        }
         self.output.clear_context(context);
         defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
     }

@@ -2,7 +2,7 @@
 
 use crate::program::{self, Also};
 use crate::signature::PREFIX;
-use crate::{Error, Target, entry};
+use crate::{Error, Target, debug, entry};
 use cranelift_module::default_libcall_names;
 use cranelift_object::object::SectionKind;
 use cranelift_object::{ObjectBuilder, ObjectModule};
@@ -25,14 +25,20 @@ pub fn object(program: &Program, target: &Target) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// If a function is too large for the code generator.
 pub fn object_named(program: &Program, target: &Target, prefix: &str) -> Result<Vec<u8>, Error> {
+    if target.is_for_debugging() && !target.is_elf() {
+        return Err(Error::Target(format!("`--debug` makes DWARF for Linux, and not for {}", target.name())));
+    }
     let mut module = module(target)?;
-    program::emit_named(program, &mut module, Also::Nothing, prefix)?;
+    let emitted = program::emit_named(program, &mut module, Also::Nothing, prefix)?;
     entry::map(&mut module, prefix, &map_text(program, &Layout::new(program)))?;
     let mut product = module.finish();
     if target.is_elf() {
         // Without this section a linker takes the stack to be executable.
         let name = b".note.GNU-stack".to_vec();
         product.object.add_section(Vec::new(), name, SectionKind::Other);
+    }
+    if let Some(notes) = emitted.notes {
+        debug::write(&mut product, program, &notes, target.architecture())?;
     }
     product.emit().map_err(|error| Error::Output(error.to_string()))
 }

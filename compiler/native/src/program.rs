@@ -1,5 +1,6 @@
 //! A whole program into a module: its routines, its entry points, and the data that code refers to.
 
+use crate::debug::notes::Notes;
 use crate::entry::EntryPoints;
 use crate::measure::Measures;
 use crate::module::{ModuleEmitter, Workspace};
@@ -34,6 +35,8 @@ pub(crate) struct Emitted {
     /// Empty if none was wanted.
     pub(crate) listing: String,
     pub(crate) measures: Measures,
+    /// Where code is made for debugging.
+    pub(crate) notes: Option<Notes>,
 }
 
 /// What else is wanted than the code.
@@ -61,11 +64,12 @@ pub(crate) fn emit_named(
     let is_of_x86 = matches!(output.isa().triple().architecture, Architecture::X86_64);
     let rules = match aim {
         Aim::Speed => &RULES,
-        Aim::Size => &RULES_OF_SIZE,
+        Aim::Size | Aim::Debugging => &RULES_OF_SIZE,
     };
     let suits = |it: &Statement| is_in_line(it, aim);
     let gain = Gain { suits: &suits, of_reads: false, of_scalars: true };
-    let program = &promoted(program, gain);
+    // A debugger finds each variable where it is declared.
+    let program = if aim == Aim::Debugging { program } else { &promoted(program, gain) };
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
     let effects = effects(program, rules);
     let scanned = scan::scanned(program, &effects);
@@ -73,6 +77,9 @@ pub(crate) fn emit_named(
     module.prefix = prefix;
     module.listing = (also == Also::Listing).then(String::new);
     module.counts = also == Also::Counts && is_of_x86;
+    if aim == Aim::Debugging {
+        module.declare_notes()?;
+    }
     module.declare()?;
     for at in 0..program.routines.len() {
         function::emit(&mut module, &mut workspace, RoutineId::next(at))?;
@@ -80,7 +87,7 @@ pub(crate) fn emit_named(
     let entry_points = entry::emit(&mut module, &mut workspace)?;
     let measures = module.measures([entry_points.init, entry_points.scan]);
     module.define_constants()?;
-    Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), measures })
+    Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), measures, notes: module.notes })
 }
 
 /// Whether the code for a statement calls nothing of the runtime's, which would find what is in registers in the frame. What a

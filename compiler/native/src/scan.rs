@@ -31,6 +31,7 @@ pub(crate) fn scanned(program: &Program, effects: &[Effects]) -> Option<RoutineI
 pub(crate) fn start_of_scan(module: &mut ModuleEmitter<'_>, builder: &mut FunctionBuilder<'_>) -> Begun {
     let entry = builder.current_block().expect("the function's first block");
     let &[state, context, instance] = builder.block_params(entry) else { unreachable!("as many as declared") };
+    module.note_state(builder, state);
     let [none, first, done] = [(); 3].map(|()| builder.create_block());
     builder.set_cold_block(none);
     builder.append_block_param(done, CODE);

@@ -47,6 +47,7 @@ impl<'p> Function<'_, 'p> {
 
     fn emit(&mut self, statement: &'p Statement) -> Flow {
         self.release_temporaries();
+        self.note_statement(statement.at);
         match &statement.kind {
             StatementKind::Assign { target, value } => self.assign(target, value),
             StatementKind::If { condition, then, otherwise } => {
@@ -62,9 +63,18 @@ impl<'p> Function<'_, 'p> {
             StatementKind::Try { body, kind, handler } => return self.attempt(body, kind, handler),
             StatementKind::Finally { body, last } => return self.finally(body, last),
             StatementKind::Turn => self.take_turn(statement.at),
-            StatementKind::Exit => return self.leave_loop(),
-            StatementKind::Continue => return self.continue_loop(),
-            StatementKind::Return => return self.return_from_loops(),
+            StatementKind::Exit => {
+                self.note_jump();
+                return self.leave_loop();
+            }
+            StatementKind::Continue => {
+                self.note_jump();
+                return self.continue_loop();
+            }
+            StatementKind::Return => {
+                self.note_jump();
+                return self.return_from_loops();
+            }
             StatementKind::Call { callee, instance, arguments, result } => {
                 self.call(*callee, instance.as_ref(), arguments, result.as_ref(), statement.at);
             }

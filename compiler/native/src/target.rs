@@ -22,13 +22,16 @@ pub enum Aim {
     Speed,
     /// As few bytes of code: blocks and routines are called, and loops stay loops.
     Size,
+    /// A debugger, which finds each statement at one place and each variable in memory. An object has debug information.
+    Debugging,
 }
 
 impl Aim {
     pub(crate) fn of(isa: &dyn TargetIsa) -> Self {
         match isa.flags().opt_level() {
             OptLevel::SpeedAndSize => Self::Size,
-            OptLevel::None | OptLevel::Speed => Self::Speed,
+            OptLevel::None => Self::Debugging,
+            OptLevel::Speed => Self::Speed,
         }
     }
 }
@@ -112,6 +115,14 @@ impl Target {
         self.machine == Machine::X86_64
     }
 
+    pub(crate) fn is_for_debugging(&self) -> bool {
+        self.aim == Aim::Debugging
+    }
+
+    pub(crate) fn architecture(&self) -> Architecture {
+        self.triple.architecture
+    }
+
     pub(crate) fn is_elf(&self) -> bool {
         self.triple.binary_format == BinaryFormat::Elf
     }
@@ -134,9 +145,9 @@ impl Target {
 }
 
 /// For code that runs here and now, with all that this machine can do.
-pub(crate) fn native_isa() -> Result<OwnedTargetIsa, Error> {
+pub(crate) fn native_isa(aim: Aim) -> Result<OwnedTargetIsa, Error> {
     let builder = cranelift_native::builder().map_err(|error| Error::Target(error.to_owned()))?;
-    builder.finish(flags("false", Aim::Speed)).map_err(|error| Error::Output(error.to_string()))
+    builder.finish(flags("false", aim)).map_err(|error| Error::Output(error.to_string()))
 }
 
 /// The same machine and settings, but without optimisation.
@@ -158,15 +169,19 @@ fn flags(is_pic: &str, aim: Aim) -> Flags {
     let level = match aim {
         Aim::Speed => "speed",
         Aim::Size => "speed_and_size",
+        Aim::Debugging => "none",
     };
+    let is_debugged = if aim == Aim::Debugging { "true" } else { "false" };
     let verifier = if cfg!(debug_assertions) { "true" } else { "false" };
     let mut flags = settings::builder();
     for (name, value) in [
         ("is_pic", is_pic),
         ("opt_level", level),
         ("enable_verifier", verifier),
-        // An .eh_frame from Cranelift needs absolute relocations, which static PIE refuses.
-        ("unwind_info", "false"),
+        // An .eh_frame from Cranelift needs absolute relocations, which static PIE refuses; a debugger reads a section that is not
+        // loaded.
+        ("unwind_info", is_debugged),
+        ("preserve_frame_pointers", is_debugged),
         // A frame larger than the guard page touches each page.
         ("enable_probestack", "true"),
         ("probestack_strategy", "inline"),

@@ -1,9 +1,10 @@
 //! The way of calls to a statement: `Main > motors[2] > Step`.
 
+use crate::declared;
 use staunch_frontend::Sources;
 use staunch_host::{Map, Type, instance_at};
 use staunch_ir::interpret::debug::{Ask, Running, Stopped};
-use staunch_ir::{HELD_PROGRAM, Location, Program, Routine, RoutineKind};
+use staunch_ir::{HELD_PROGRAM, Program, RoutineKind};
 
 /// What is called, from the PROGRAM on.
 pub(super) fn call_path<A: Ask>(stopped: &Stopped<'_, A>, map: &Map, sources: &Sources) -> Vec<String> {
@@ -23,26 +24,12 @@ pub(super) fn call_path<A: Ask>(stopped: &Stopped<'_, A>, map: &Map, sources: &S
             caller = Some(path);
         }
         if matches!(routine.kind, RoutineKind::Function | RoutineKind::Method) {
-            names.push(declared_name(sources, routine));
+            names.push(declared::name(sources, routine));
         }
         // A FUNCTION has no instance: what it calls is seen from its caller.
         instance = own.or(instance);
     }
     names
-}
-
-/// A routine's name as it is declared: that in the program may have a class or a number with it.
-fn declared_name(sources: &Sources, routine: &Routine) -> String {
-    let Location { file, line, column } = routine.location;
-    // The library is not among the sources.
-    if usize::from(file) >= sources.files().len() {
-        return routine.name.clone();
-    }
-    let source = sources.file(file);
-    let line = source.text.get(source.line_range(line)).unwrap_or_default();
-    let before = usize::from(column.saturating_sub(1));
-    let name: String = line.chars().skip(before).take_while(|it| it.is_alphanumeric() || *it == '_').collect();
-    if name.is_empty() { routine.name.clone() } else { name }
 }
 
 /// A path as it is seen from the instance that calls.

@@ -151,6 +151,15 @@ fn what_cannot_be_built_is_refused_with_the_way_to_go() {
     let narrow = folder.staunch("build main.st --emit obj --target thumbv7em-none-eabihf").err(2);
     has(&narrow, &["64-bit", "--backend rust"]);
     folder.staunch("build main.st --emit obj --target nowhere").err(2);
+    for (arguments, way) in [
+        ("--emit rust -g", "`--emit obj`, `lib` or `exe`"),
+        ("--debug --backend rust", "`--backend native`"),
+        ("-g --opt size", "does not go with `--opt`"),
+        ("-g --target x86_64-pc-windows-gnu --emit obj", "`--debug` makes DWARF for Linux"),
+    ] {
+        has(&folder.staunch(&format!("build main.st {arguments} -o made")).err(2), &[way]);
+        assert!(!folder.0.join("made").exists(), "{arguments}");
+    }
     folder.write("fb.st", "FUNCTION_BLOCK F VAR a : INT; END_VAR a := 1; END_FUNCTION_BLOCK");
     has(&folder.staunch("run fb.st").err(2), &["PROGRAM"]);
 }
@@ -170,7 +179,7 @@ fn two_folders_make_the_same_bytes() {
         folder.staunch(&format!("build {arguments} -q -A warnings -o made")).out(0);
         std::fs::read(folder.0.join("made")).unwrap()
     };
-    for kind in ["rust", "map", "header", "obj", "lib", "exe", "rust --backend rust"] {
+    for kind in ["rust", "map", "header", "obj", "lib", "exe", "rust --backend rust", "obj -g", "lib -g", "exe -g"] {
         let arguments = format!("--emit {kind}");
         let [one, other] = folders.each_ref().map(|it| made(it, &arguments));
         assert!(one == other, "{kind} differs");

@@ -6,7 +6,7 @@ mod modbus;
 mod serial;
 mod shared_memory;
 
-use super::{COUNTER, Folder, Ran, has};
+use super::{COUNTER, Folder, Ran, has, has_tool};
 use std::io::{BufRead as _, BufReader, Read as _};
 use std::net::TcpListener;
 use std::process::{Child, ChildStderr, Command, Stdio};
@@ -99,16 +99,6 @@ fn until(what: &str, mut holds: impl FnMut() -> bool) {
         assert!(Instant::now() < limit, "never: {what}");
         std::thread::sleep(Duration::from_millis(2));
     }
-}
-
-/// Whether a program that a test needs exists. Where all tools are expected, it is a mistake if it does not.
-fn has_tool(command: &mut Command, package: &str) -> bool {
-    let is_there = command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|it| it.success());
-    if !is_there {
-        assert!(std::env::var_os("CI").is_none(), "apt-get install {package}");
-        println!("SKIPPED: no {package}");
-    }
-    is_there
 }
 
 /// `mbpoll` with a program's server; `None` where it is not installed.

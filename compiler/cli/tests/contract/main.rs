@@ -11,6 +11,8 @@ mod coverage;
 mod debug;
 mod external;
 mod fmt;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod gdb;
 mod header;
 #[cfg(unix)]
 mod io;
@@ -117,6 +119,16 @@ fn has(text: &str, parts: &[&str]) {
     for part in parts {
         assert!(text.contains(part), "no `{part}` in:\n{text}");
     }
+}
+
+/// Whether a program that a test needs exists. Where all tools are expected, it is a mistake if it does not.
+fn has_tool(command: &mut Command, package: &str) -> bool {
+    let is_there = command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|it| it.success());
+    if !is_there {
+        assert!(std::env::var_os("CI").is_none(), "apt-get install {package}");
+        println!("SKIPPED: no {package}");
+    }
+    is_there
 }
 
 const COUNTER: &str = "PROGRAM Main

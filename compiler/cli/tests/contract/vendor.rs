@@ -44,7 +44,7 @@ const PROJECT: &str = r#"<Project xmlns="http://schemas.microsoft.com/developer/
 </ItemGroup></Project>
 "#;
 
-fn project(name: &str) -> Folder {
+pub(super) fn project(name: &str) -> Folder {
     let folder = Folder::with(name, &[("Line.plcproj", PROJECT), ("GVL_Line.TcGVL", LIST)]);
     std::fs::create_dir_all(folder.0.join("POUs")).unwrap();
     folder.write("POUs/MAIN.TcPOU", MAIN);
