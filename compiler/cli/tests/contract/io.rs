@@ -1,6 +1,7 @@
 //! Inputs and outputs of a running program: Modbus, and a process image in shared memory (`docs/io.md`).
 
 mod client;
+mod emitted;
 mod layout;
 mod modbus;
 mod serial;
