@@ -50,7 +50,7 @@ mod allocations;
 mod fixture;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
-pub use attachments::{AtEnd, Connection, Io, Mistake, check_remotes, is_address_and_port, openplc_layout};
+pub use attachments::{AtEnd, Connection, Io, Mistake, SerialUnit, check_remotes, is_address_and_port, openplc_layout};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot};
 pub use csv::cells as csv_cells;

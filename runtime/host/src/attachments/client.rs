@@ -6,19 +6,12 @@
 mod layout;
 mod link;
 mod plan;
-mod port;
 mod rtu;
 mod shared;
 mod tcp;
 mod trouble;
 mod wire;
 mod worker;
-
-#[cfg(target_os = "linux")]
-mod serial;
-#[cfg(not(target_os = "linux"))]
-#[path = "client/no_serial.rs"]
-mod serial;
 
 use super::attachment::{Attachment, Ended};
 use super::options::AtEnd;
