@@ -9,6 +9,7 @@ mod attachment;
 mod client;
 pub(crate) mod emergency;
 mod exchange;
+mod gpio;
 mod image;
 mod line;
 mod options;
@@ -28,12 +29,14 @@ mod mapping;
 
 pub(crate) use attachment::Ended;
 pub use client::{Mistake, check_remotes, openplc_layout};
+pub use gpio::check_pins;
 pub use options::{AtEnd, Connection, Io, SerialUnit, is_address_and_port};
 
 use crate::map::Map;
 use crate::{Error, Machine};
 use attachment::Attachment;
 use client::Client;
+use gpio::Gpio;
 use points::Points;
 use rtu_server::RtuServer;
 use server::Modbus;
@@ -68,6 +71,9 @@ impl Attachments {
         }
         for client in Client::start_all(map, &points, io.at_end, quiet)? {
             all.push(Box::new(client));
+        }
+        if let Some(gpio) = Gpio::start(map, &points, io.at_end)? {
+            all.push(Box::new(gpio));
         }
         Ok(Self(all))
     }

@@ -1,7 +1,8 @@
-//! Inputs and outputs of a running program: Modbus, and a process image in shared memory (`docs/io.md`).
+//! Inputs and outputs of a running program: Modbus, lines, and a process image in shared memory (`docs/io.md`).
 
 mod client;
 mod emitted;
+mod gpio;
 mod layout;
 mod modbus;
 mod serial;

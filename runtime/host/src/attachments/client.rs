@@ -22,6 +22,7 @@ use crate::{Error, Machine};
 pub use layout::openplc_layout;
 use plan::Plan;
 pub use plan::{Mistake, check_remotes};
+pub(super) use plan::{input_places, values};
 use shared::{Account, Shared};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -115,7 +116,7 @@ impl Attachment for Client {
         if !self.shared.is_fatal.load(Ordering::Relaxed) {
             return None;
         }
-        let trouble = self.shared.account().trouble.clone();
+        let trouble = format!("{} (on-loss = \"fault\")", self.shared.account().trouble);
         Some(Error::Connection { name: self.label.clone(), trouble })
     }
 
