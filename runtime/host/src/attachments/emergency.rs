@@ -14,6 +14,7 @@ static LINE_COUNT: AtomicUsize = AtomicUsize::new(0);
 
 /// Lines of a GPIO chip, and the bits that they take.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "only Linux has lines"))]
 pub(super) struct Guarded {
     /// It only makes one system call.
     pub set: fn(descriptor: i32, bits: u64, mask: u64),
@@ -23,6 +24,7 @@ pub(super) struct Guarded {
 }
 
 /// From now on, these lines are cared for; `false` where there are too many.
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "only Linux has lines"))]
 pub(super) fn add_lines(lines: Guarded) -> bool {
     LINES.get(LINE_COUNT.fetch_add(1, Ordering::Relaxed)).is_some_and(|it| it.set(lines).is_ok())
 }

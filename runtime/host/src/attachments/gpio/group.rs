@@ -24,6 +24,7 @@ pub(super) struct Group {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(not(target_os = "linux"), allow(dead_code, reason = "only Linux has lines"))]
 pub(super) struct Place {
     pub line: PinLine,
     /// Its number among the points.
