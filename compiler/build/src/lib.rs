@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 use staunch_frontend::{Level, Levels, Severity, Source, Sources};
 use staunch_rust::{Shape, State};
 
-pub use project::{Modbus, Project};
+pub use project::{Gpio, GpioLine, Modbus, Project};
 pub use staunch_frontend::Dialect;
 
 /// Compiles a file, or every source below a folder, to `$OUT_DIR/<its stem>.rs`.

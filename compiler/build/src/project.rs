@@ -1,9 +1,11 @@
 //! `staunch.toml`: the settings of the command and of build scripts, for the folder it is in and those
 //! below.
 
+mod gpio;
 mod layout;
 mod modbus;
 
+pub use gpio::{Gpio, GpioLine};
 pub use modbus::Modbus;
 
 use staunch_frontend::{Dialect, Level, Levels, format, nearest};
@@ -41,6 +43,8 @@ pub struct Project {
     pub verbose: bool,
     /// `[[modbus]]`
     pub modbus: Vec<Modbus>,
+    /// `[[gpio]]`
+    pub gpio: Vec<Gpio>,
     /// `[fmt]`
     pub layout: format::Style,
     text: String,
@@ -95,9 +99,15 @@ impl Project {
         line_of(&self.text, key, value).map_or_else(|| self.file(), |line| format!("{}:{line}", self.file()))
     }
 
-    /// The file and the line of a setting in the table of `[[modbus]]` with this number, from 0.
-    pub fn place_in_modbus(&self, number: usize, key: &str) -> String {
-        let tables = self.text.match_indices("[[modbus]]").map(|it| it.0);
+    /// Whether a run in real time reads from and writes to something.
+    pub fn is_connected(&self) -> bool {
+        !self.modbus.is_empty() || !self.gpio.is_empty()
+    }
+
+    /// The file and the line of a setting in the table `[[name]]` with this number, from 0.
+    pub fn place_in_table(&self, name: &str, number: usize, key: &str) -> String {
+        let head = format!("[[{name}]]");
+        let tables = self.text.match_indices(&head).map(|it| it.0);
         let start = tables.take(number + 1).last().unwrap_or(0);
         let before = self.text[..start].lines().count();
         let line = line_of(&self.text[start..], key, None).unwrap_or(1);
@@ -160,7 +170,7 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 23] = [
+const SETTINGS: [&str; 24] = [
     "dialect",
     "files",
     "libraries",
@@ -183,6 +193,7 @@ const SETTINGS: [&str; 23] = [
     "quiet",
     "verbose",
     "modbus",
+    "gpio",
     "fmt",
 ];
 
@@ -214,6 +225,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "quiet" => project.quiet = flag(key, value)?,
         "verbose" => project.verbose = flag(key, value)?,
         "modbus" => project.modbus = modbus::read(value)?,
+        "gpio" => project.gpio = gpio::read(value)?,
         "fmt" => project.layout = layout::read(value)?,
         _ => {
             return Err(match nearest(key, SETTINGS.into_iter()) {

@@ -258,7 +258,7 @@ pub struct Run {
     #[command(flatten)]
     pub pacing: Pacing,
     /// With --realtime, connect the variables at addresses: shm:NAME is a process image in /dev/shm, modbus:ADDRESS:PORT a
-    /// Modbus TCP server; may be repeated
+    /// Modbus TCP server, modbus-rtu:PORT a Modbus RTU server; may be repeated
     #[arg(long, value_name = "CONNECTION", requires = "realtime", value_parser = Connection::parse)]
     pub io: Vec<Connection>,
     /// With --io, or with Modbus servers in staunch.toml, what outputs do at the end and after a fault [default: zero]

@@ -1,12 +1,13 @@
-//! The servers of a project file that a run in real time reads inputs from and writes outputs to: held against the program's
+//! The servers and lines of a project file that a run in real time reads inputs from and writes outputs to: held against the program's
 //! variables, and given to its map.
 
 use staunch_build::{Modbus, Project};
-use staunch_host::{Map, Mistake, OnLoss, Remote, WordOrder, check_remotes, openplc_layout, parse_duration};
+use staunch_host::{Map, Mistake, OnLoss, Pin, Remote, WordOrder, check_remotes, openplc_layout, parse_duration};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::time::Duration;
 
+mod gpio;
 mod server;
 
 /// How often a server is asked where the project does not say, and how long an answer may take.
@@ -15,11 +16,12 @@ const TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Gives a program the servers of its project. An error is a mistake in the project file, with its place.
 pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
-    if project.modbus.is_empty() {
+    if !project.is_connected() {
         return Ok(());
     }
-    let place =
-        |(number, key, text): (usize, String, String)| format!("{}: {text}", project.place_in_modbus(number, &key));
+    let place = |(number, key, text): (usize, String, String)| {
+        format!("{}: {text}", project.place_in_table("modbus", number, &key))
+    };
     let read = |(number, it)| remote(it).map_err(|(key, text)| (number, key, text));
     let mut remotes: Vec<Remote> =
         project.modbus.iter().enumerate().map(read).collect::<Result<_, _>>().map_err(place)?;
@@ -29,7 +31,8 @@ pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
     lay_out(project, &map, &mut remotes).map_err(place)?;
     check_remotes(&remotes, &map)
         .map_err(|(number, mistake)| place(mistaken(number, &project.modbus[number], mistake)))?;
-    program.remotes = remotes.iter().flat_map(Remote::lines).collect();
+    let pins = gpio::pins(project, &remotes, &map)?;
+    program.remotes = remotes.iter().flat_map(Remote::lines).chain(pins.iter().map(Pin::record)).collect();
     Ok(())
 }
 

@@ -132,7 +132,7 @@ impl Session {
         if errors > 0 {
             return Ok(REJECTED);
         }
-        if !session.project.modbus.is_empty() {
+        if session.project.is_connected() {
             let program = session.compile_to_build(&session.sources)?.program;
             program.map_or(Ok(()), |mut it| remotes::connect(&session.project, &mut it))?;
         }

@@ -36,6 +36,7 @@ pub const VERSION: u32 = 1;
 /// remote     name  address and port  unit  period in ns  timeout in ns  on-loss  word-order, or -; for a serial port, which is
 ///            in the place of the address, then baud rate  parity  stop bits; then its registers
 /// register   variable  place at the server, `input-register 3`
+/// gpio       variable  chip  number or name  that of the line  low or high: the level of TRUE  bias  debounce in us, or 0  TRUE, FALSE or -: safe
 /// object     offset in the machine  size
 /// globals    struct:id  offset
 /// instance   number  name  program  struct:id  offset  interval in ns  priority

@@ -8,7 +8,7 @@ use crate::emitter::Emitter;
 use crate::io_parts::Part;
 
 /// A variable at a direct address, and how its bits are carried.
-struct Io {
+pub struct Io {
     variable: String,
     address: Address,
     /// Number of bits.
@@ -27,7 +27,8 @@ enum Way {
 }
 
 /// Storage of a repr.
-struct Unit {
+#[derive(Clone)]
+pub struct Unit {
     place: TokenStream,
     repr: Repr,
     /// The type of a variable of its own.
@@ -37,7 +38,7 @@ struct Unit {
     /// What a subrange may be.
     range: Option<(i128, i128)>,
     /// It is in a cell.
-    is_cell: bool,
+    pub is_cell: bool,
 }
 
 impl Emitter<'_> {
@@ -101,7 +102,6 @@ impl Emitter<'_> {
         }
     }
 
-    /// In memory at an address, `%M`, a variable that is not a number is reached only through its field.
     fn io(&self) -> Vec<Io> {
         let globals = self.program.globals;
         let fields = self.program.structure(globals).fields.iter().enumerate();
@@ -119,13 +119,19 @@ impl Emitter<'_> {
         io
     }
 
+    /// In memory at an address, `%M`, a variable that is not a number is reached only through its field.
+    fn has_rows(&self, ty: Type, address: Address) -> bool {
+        address.area != Area::Memory || self.program.repr(ty).is_some()
+    }
+
     fn io_of(&self, name: &str, ty: Type, place: Option<TokenStream>, address: Address) -> Vec<Part> {
-        let is_number = self.program.repr(ty).is_some();
-        if !is_number && address.area == Area::Memory {
-            return Vec::new();
-        }
+        if self.has_rows(ty, address) { self.parts_at(name, ty, place, address) } else { Vec::new() }
+    }
+
+    /// The numbers in a variable; a single one has its address as it is written.
+    fn parts_at(&self, name: &str, ty: Type, place: Option<TokenStream>, address: Address) -> Vec<Part> {
         let mut parts = self.parts(name, ty, place, address);
-        if let (true, [one]) = (is_number, parts.as_mut_slice()) {
+        if let (true, [one]) = (self.program.repr(ty).is_some(), parts.as_mut_slice()) {
             one.address = address;
         }
         parts
@@ -133,9 +139,7 @@ impl Emitter<'_> {
 
     fn own(&self, part: Part) -> Io {
         let place = part.place.unwrap_or_default();
-        let is_bit = part.address.width == 1;
-        let unit =
-            Unit { ty: Some(part.ty), is_bit, range: self.program.range(part.ty), ..self.unit(place, part.repr) };
+        let unit = self.own_unit(place, part.ty, part.repr, part.address.width == 1);
         Io {
             variable: part.name,
             address: part.address,
@@ -145,14 +149,25 @@ impl Emitter<'_> {
         }
     }
 
+    /// A variable, or an element of one.
+    pub fn own_unit(&self, place: TokenStream, ty: Type, repr: Repr, is_bit: bool) -> Unit {
+        Unit { ty: Some(ty), is_bit, range: self.program.range(ty), ..self.unit(place, repr) }
+    }
+
     fn unit(&self, place: TokenStream, repr: Repr) -> Unit {
         Unit { place, repr, ty: None, is_bit: false, range: None, is_cell: self.shared }
     }
 
     /// The numbers in a variable that shares its bits with others.
     fn views(&self, variable: &Variable) -> Vec<Io> {
+        let has_rows = variable.view.is_some_and(|it| self.has_rows(it.ty, it.address));
+        if has_rows { self.parts_of_view(variable) } else { Vec::new() }
+    }
+
+    /// [`views`](Self::views), also of arrays and structures in memory.
+    pub fn parts_of_view(&self, variable: &Variable) -> Vec<Io> {
         let Some(View { ty, bit, address }) = variable.view else { return Vec::new() };
-        let parts = self.io_of(&variable.name, ty, None, address);
+        let parts = self.parts_at(&variable.name, ty, None, address);
         parts.into_iter().filter_map(|it| self.view(variable, it, bit, address)).collect()
     }
 
@@ -233,7 +248,7 @@ impl Io {
         Literal::u64_unsuffixed(u64::MAX >> (64 - u32::from(self.width)))
     }
 
-    fn read(&self) -> TokenStream {
+    pub fn read(&self) -> TokenStream {
         if let (Some(shift), [unit]) = (self.shared, self.units.as_slice()) {
             let (whole, mask) = (shifted(unit.read(), Way::Down, shift), self.mask());
             return quote!(#whole & #mask);
@@ -243,7 +258,7 @@ impl Io {
         quote!(#(#parts)|*)
     }
 
-    fn write(&self) -> TokenStream {
+    pub fn write(&self) -> TokenStream {
         if let (Some(shift), [unit]) = (self.shared, self.units.as_slice()) {
             let (whole, mask, write) = (unit.read(), self.mask(), unit.write());
             let kept = Literal::u64_unsuffixed((u64::MAX >> (64 - u32::from(self.width))) << shift);
@@ -281,6 +296,17 @@ impl Unit {
         u64::from(self.repr.size()) * 8
     }
 
+    /// What `it` refers to, to be written.
+    pub fn referred(&self) -> Self {
+        let place = if self.is_cell || self.is_enumeration() { quote!(it) } else { quote!(*it) };
+        Self { place, ..self.clone() }
+    }
+
+    /// The value or cell `it`, to be read.
+    pub fn iterated(&self) -> Self {
+        Self { place: quote!(it), ..self.clone() }
+    }
+
     fn is_enumeration(&self) -> bool {
         matches!(self.ty, Some(Type::Enum(_)))
     }
@@ -289,7 +315,7 @@ impl Unit {
         if self.is_enumeration() { quote!(#place.0) } else { place }
     }
 
-    fn read(&self) -> TokenStream {
+    pub fn read(&self) -> TokenStream {
         let place = &self.place;
         let place = self.number(if self.is_cell { quote!(#place.get()) } else { quote!(#place) });
         match self.repr {
@@ -305,7 +331,7 @@ impl Unit {
         }
     }
 
-    fn write(&self) -> TokenStream {
+    pub fn write(&self) -> TokenStream {
         let place = &self.place;
         let place = match (self.is_cell, self.is_enumeration()) {
             (true, false) => quote!(*#place.get_mut()),

@@ -105,7 +105,8 @@ impl Emitter<'_> {
         };
         let names = (0..structure.fields.len()).map(|at| self.names.field(id, FieldId::next(at)));
         let shared = self.shared.then(|| quote!(reference::shared!(#name { #(#names),* });));
-        let io = (id == self.program.globals).then(|| self.io_methods());
+        let io = (id == self.program.globals).then(|| [self.io_methods(), self.image_methods()]);
+        let io = io.into_iter().flatten();
         let align = (structure.align > 1).then(|| Literal::u64_unsuffixed(structure.align));
         let layout = align.map_or_else(|| quote!(#[repr(C)]), |it| quote!(#[repr(C, align(#it))]));
         quote! {
@@ -119,7 +120,7 @@ impl Emitter<'_> {
                 /// With initial values.
                 pub const fn new() -> Self { Self { #(#values),* } }
                 #methods
-                #io
+                #(#io)*
             }
             impl Default for #name { fn default() -> Self { Self::new() } }
             #compared

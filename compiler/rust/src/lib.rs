@@ -32,6 +32,7 @@ mod item;
 mod loops;
 mod name_table;
 mod place;
+mod process_image;
 mod retained;
 mod shared;
 mod short_circuit;

@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::cannot_panic;
+use support::{cannot_panic, cannot_panic_in};
 
 #[test]
 fn counters_in_arrays() {
@@ -38,4 +38,39 @@ u := u + 1;
 END_PROGRAM
 ",
     );
+}
+
+/// The bytes come from outside, and an area may be shorter than a place in it.
+const IMAGE: &str = r#"
+use staunch_runtime::firmware::Areas;
+
+static mut GLOBALS: code::Globals = code::Globals::new();
+static mut BYTES: [[u8; 20_000]; 3] = [[0; 20_000]; 3];
+
+#[unsafe(no_mangle)]
+extern "C" fn main(count: i32) -> i32 {
+    let (globals, bytes) = unsafe { (&mut *(&raw mut GLOBALS), &mut *(&raw mut BYTES)) };
+    let [inputs, outputs, memory] = bytes;
+    let Some(inputs) = inputs.get(..count.unsigned_abs() as usize) else { return 1 };
+    let mut image = Areas { inputs, outputs, memory };
+    globals.read_image(&image);
+    globals.write_image(&mut image);
+    i32::from(outputs[0])
+}
+"#;
+
+#[test]
+fn a_process_image() {
+    let st = "
+TYPE Mode : (Off, Auto := 5); END_TYPE
+VAR_GLOBAL
+    raw AT %IW10 : ARRAY[1..2, 0..1, 3..9] OF INT; start AT %IX0.0 : BOOL; clock AT %IL16 : TOD; level AT %ID60 : REAL;
+    lamps AT %QX0.0 : ARRAY[0..90] OF BOOL; modes AT %QW80 : ARRAY[0..1] OF Mode; grid AT %MW10 : ARRAY[0..99] OF INT(1..7);
+    part AT %MB3 : BYTE; flag AT %MX2.7 : BOOL; text AT %QB100 : STRING[4];
+END_VAR
+PROGRAM Main
+lamps[3] := start OR flag; grid[1] := raw[1, 1, 4]; IF clock > TOD#1:00:00 AND level > 1.0 AND part > 3 THEN modes[1] := Auto; END_IF;
+END_PROGRAM
+";
+    cannot_panic_in("process_image", st, IMAGE);
 }

@@ -1,9 +1,11 @@
 //! What a firmware asks of the program that is compiled into it: what runs when, which variable is at
 //! which direct address, and what it retains. Generated Rust holds the tables.
 
+mod image;
 mod named;
 mod retained;
 
+pub use image::{Areas, Place, ProcessImage, Width};
 pub use named::{Name, Value};
 pub use retained::{Carried, Carrier, NotRetained, RECORD_OVERHEAD, Stamp, load, save, stamp};
 

@@ -38,7 +38,11 @@ const FLAGS: [(&str, &str, &str); 26] = [
     ("--overrun", "skip|catch-up|fault", "In real time, what follows a scan that is too long; skip without"),
     ("--watchdog", "TIME", "In real time, end when no scan has ended for so long"),
     ("--watchdog-device", "FILE", "In real time, show a watchdog of the machine that scans end: /dev/watchdog"),
-    ("--io", "CONNECTION", "In real time, connect %I, %Q and %M: shm:NAME or modbus:ADDRESS:PORT; may be repeated"),
+    (
+        "--io",
+        "CONNECTION",
+        "In real time, connect %I, %Q and %M: shm:NAME, modbus:ADDRESS:PORT or modbus-rtu:PORT; may be repeated",
+    ),
     ("--io-stop", "zero|hold", "With --io, what outputs do at the end; zero without"),
     ("--table", "", "Print the last scans as a table"),
     ("--bench", "", "Measure the time of a scan instead"),

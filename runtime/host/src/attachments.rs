@@ -9,11 +9,15 @@ mod attachment;
 mod client;
 pub(crate) mod emergency;
 mod exchange;
+mod gpio;
 mod image;
+mod line;
 mod options;
 mod pdu;
 mod points;
 mod registers;
+mod rtu_server;
+mod served;
 mod server;
 mod shared_memory;
 
@@ -25,13 +29,16 @@ mod mapping;
 
 pub(crate) use attachment::Ended;
 pub use client::{Mistake, check_remotes, openplc_layout};
-pub use options::{AtEnd, Connection, Io, is_address_and_port};
+pub use gpio::check_pins;
+pub use options::{AtEnd, Connection, Io, SerialUnit, is_address_and_port};
 
 use crate::map::Map;
 use crate::{Error, Machine};
 use attachment::Attachment;
 use client::Client;
+use gpio::Gpio;
 use points::Points;
+use rtu_server::RtuServer;
 use server::Modbus;
 use shared_memory::SharedMemory;
 
@@ -50,10 +57,13 @@ impl Attachments {
             all.push(match connection {
                 Connection::SharedMemory(name) => Box::new(SharedMemory::start(name, &points, io.at_end, state)?),
                 Connection::Modbus(address) => Box::new(Modbus::start(address, &points, io.at_end, quiet)?),
+                Connection::ModbusRtu(unit) => Box::new(RtuServer::start(unit, &points, io.at_end, quiet)?),
             });
             let without = match connection {
                 Connection::SharedMemory(_) => points.without_place(|_| true),
-                Connection::Modbus(_) => points.without_place(|it| registers::place(it).is_some()),
+                Connection::Modbus(_) | Connection::ModbusRtu(_) => {
+                    points.without_place(|it| registers::place(it).is_some())
+                }
             };
             if let Some(names) = without.filter(|_| !quiet) {
                 crate::error::tell(format_args!("note: {connection} has no place for {names}"));
@@ -61,6 +71,9 @@ impl Attachments {
         }
         for client in Client::start_all(map, &points, io.at_end, quiet)? {
             all.push(Box::new(client));
+        }
+        if let Some(gpio) = Gpio::start(map, &points, io.at_end)? {
+            all.push(Box::new(gpio));
         }
         Ok(Self(all))
     }

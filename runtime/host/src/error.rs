@@ -94,7 +94,7 @@ impl fmt::Display for Error {
                 let (took, period) = (rounded(*took), rounded(*period));
                 write!(f, "overrun: a scan took {took} of {period} (scan {scan}, program {instance}, --overrun fault)")
             }
-            Self::Connection { name, trouble } => write!(f, "connection: {name}: {trouble} (on-loss = \"fault\")"),
+            Self::Connection { name, trouble } => write!(f, "connection: {name}: {trouble}"),
             Self::Fault { fault, scan, instance, path } => {
                 let (line, column) = (fault.at.line, fault.at.column);
                 write!(f, "{path}:{line}:{column}: fault: {} (scan {scan}, program {instance})", fault.kind)

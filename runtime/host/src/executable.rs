@@ -20,7 +20,7 @@ pub fn main(code: Code) -> ExitCode {
 pub fn main_with(code: Code, arguments: impl Iterator<Item = OsString>) -> u8 {
     signal::ignore_closed_pipes();
     let started = code.machine().and_then(|(map, machine)| {
-        let wish = parse_options(arguments, !map.remotes.is_empty()).map_err(Error::Usage)?;
+        let wish = parse_options(arguments, map.is_connected()).map_err(Error::Usage)?;
         Ok(((map, machine), wish))
     });
     let ((map, mut machine), wish) = match started {

@@ -6,6 +6,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 mod error;
+mod pin;
 mod remote;
 
 mod map;
@@ -50,7 +51,9 @@ mod allocations;
 mod fixture;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
-pub use attachments::{AtEnd, Connection, Io, Mistake, check_remotes, is_address_and_port, openplc_layout};
+pub use attachments::{
+    AtEnd, Connection, Io, Mistake, SerialUnit, check_pins, check_remotes, is_address_and_port, openplc_layout,
+};
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot};
 pub use csv::cells as csv_cells;
@@ -64,6 +67,7 @@ pub use literal::parse as bytes_of;
 pub use map::{Instance, Map, Section, Structure, StructureKind, Type, Variable};
 pub use minor::{minor_faults_json, minor_faults_note};
 pub use path::{Place, instance_at, part as part_of, resolve as place_of, same as same_name};
+pub use pin::{Bias, Pin, PinLine};
 pub use realtime::{Figures, Histogram, Kept, Overrun, Pacing};
 pub use remote::{Line, OnLoss, Parity, Remote, Server, WordOrder};
 pub use replace::{Replacement, Role, followed, keep_apart, open_to_read};

@@ -1,6 +1,7 @@
 //! The map: which variable lies where. The compiler writes it as text, one record a line.
 
 use crate::Error;
+use crate::pin::Pin;
 use crate::remote::Remote;
 use staunch_runtime::{Elementary, Repr, StringType};
 use std::collections::BTreeMap;
@@ -34,6 +35,7 @@ pub struct Map {
     pub(crate) bound: Vec<(Type, usize, String)>,
     /// What a run in real time reads from and writes to.
     pub(crate) remotes: Vec<Remote>,
+    pub(crate) pins: Vec<Pin>,
     pub instances: Vec<Instance>,
 }
 
@@ -146,6 +148,11 @@ pub struct Instance {
 }
 
 impl Map {
+    /// Whether a run in real time reads from and writes to something.
+    pub(crate) fn is_connected(&self) -> bool {
+        !self.remotes.is_empty() || !self.pins.is_empty()
+    }
+
     /// Reads the text that the compiler wrote.
     pub fn parse(text: &str) -> Result<Self, Error> {
         let mut map = Self::default();
@@ -223,6 +230,11 @@ impl Map {
                 let (name, place) = (record.text()?.to_owned(), record.text()?.to_owned());
                 let remote = self.remotes.last_mut().ok_or_else(|| record.error("a register of no server"))?;
                 remote.variables.push((name, place));
+                Ok(())
+            }
+            "gpio" => {
+                let pin = Pin::parse(&mut record.cells).ok_or_else(|| record.error("a line that does not read"))?;
+                self.pins.push(pin);
                 Ok(())
             }
             "globals" => {

@@ -84,6 +84,20 @@ impl Server {
 }
 
 impl Line {
+    pub const BAUD_RATES: std::ops::RangeInclusive<u32> = 300..=4_000_000;
+    /// Units that answer: 0 stands for all of them, and from 248 on numbers are reserved.
+    pub const UNITS: std::ops::RangeInclusive<u8> = 1..=247;
+
+    /// With the settings that are usual for Modbus RTU: "MODBUS over Serial Line V1.02", 2.5.1.
+    pub fn at(port: &str) -> Self {
+        Self { port: port.to_owned(), baud_rate: 19200, parity: Parity::Even, stop_bits: 1 }
+    }
+
+    /// Whether a text is a path, on one line.
+    pub fn is_port(text: &str) -> bool {
+        text.starts_with('/') && !text.contains(char::is_control)
+    }
+
     /// What a message shows of it: `19200 baud, parity even, 1 stop bit`.
     pub fn settings(&self) -> String {
         let (parity, plural) = (word(&Parity::ALL, self.parity), if self.stop_bits == 1 { "" } else { "s" });

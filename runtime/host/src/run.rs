@@ -291,7 +291,7 @@ impl Runner<'_> {
     }
 
     fn attach(&mut self) -> Result<(), Error> {
-        if !self.options.io.connections.is_empty() || !self.map.remotes.is_empty() {
+        if !self.options.io.connections.is_empty() || self.map.is_connected() {
             let (state, quiet) = (self.machine.state(), self.options.quiet);
             self.attachments = Some(Attachments::start(self.map, &self.options.io, state, quiet)?);
         }

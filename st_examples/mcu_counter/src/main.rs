@@ -16,7 +16,7 @@ use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, heprintln, hprintln};
 use plc::{Counter, Globals};
-use staunch_runtime::firmware::{Io, Stamp};
+use staunch_runtime::firmware::{Place, ProcessImage, Stamp, Width};
 use staunch_runtime::{Context, Fault};
 use stimulus::Stimulus;
 
@@ -43,35 +43,45 @@ fn main() -> ! {
     }
 }
 
-/// The board's pins. Here a line of the stimulus sets the inputs, and a row shows the outputs; a board has
-/// its ports in their place.
+/// The board's pins, as a process image. Here a line of the stimulus sets the inputs, and a row shows the outputs; a board has its ports in
+/// their place.
 #[derive(Default)]
 struct Pins {
+    /// %IX0.0 to %IX0.2
     inputs: u64,
+    /// %QX0.0 and %QX0.1
     outputs: u64,
+    /// %QW1
+    per_minute: i16,
+}
+
+impl ProcessImage for Pins {
+    fn load(&self, place: Place, bytes: &mut [u8]) {
+        let is_high = self.inputs.checked_shr(place.number as u32).unwrap_or(0) & 1 == 1;
+        bytes.fill(is_high.into());
+    }
+
+    fn store(&mut self, place: Place, bytes: &[u8]) {
+        match (place.width, bytes) {
+            (Width::Bit, [0]) => self.outputs &= !(1 << place.number),
+            (Width::Bit, _) => self.outputs |= 1 << place.number,
+            (Width::Word, [low, high]) => self.per_minute = i16::from_le_bytes([*low, *high]),
+            _ => {}
+        }
+    }
 }
 
 impl Pins {
-    /// What is at the address of an input.
-    fn read(&self, io: &Io) -> u64 {
-        self.inputs >> io.bit
-    }
-
-    fn write(&mut self, io: &Io, bits: u64) {
-        let mask = u64::MAX >> (64 - io.width) << io.bit;
-        self.outputs = self.outputs & !mask | bits << io.bit;
-    }
-
     fn is_set(&self, output: u32) -> bool {
         self.outputs >> output & 1 == 1
     }
 }
 
-/// One scan between the pins: inputs by the program's table of addresses, then the program, then the outputs.
+/// One scan between the pins: the program's inputs, then the program, then its outputs.
 fn scan(counter: &mut Counter, globals: &mut Globals, pins: &mut Pins, cx: &Context) -> Result<(), Fault> {
-    globals.read_inputs(|io| pins.read(io));
+    globals.read_image(pins);
     counter.scan(cx, globals)?;
-    globals.write_outputs(|io, bits| pins.write(io, bits));
+    globals.write_image(pins);
     Ok(())
 }
 
@@ -109,7 +119,7 @@ fn restart(counter: &mut Counter, now: i64) {
 fn row(scan: u32, now: i64, counter: &Counter, pins: &Pins) {
     let [arrives, leaves, new_shift] = [0, 1, 2].map(|pin| word(pins.inputs >> pin & 1 == 1));
     let [full, idle] = [0, 1].map(|output| word(pins.is_set(output)));
-    let (on_belt, shift, per_minute) = (counter.on_belt.cv, counter.shift.cv, (pins.outputs >> 16) as i16);
+    let (on_belt, shift, per_minute) = (counter.on_belt.cv, counter.shift.cv, pins.per_minute);
     let time = now / 1_000_000;
     hprintln!("{scan},{time},{arrives},{leaves},{new_shift},{on_belt},{shift},{full},{idle},{per_minute}");
 }

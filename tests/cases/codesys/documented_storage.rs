@@ -335,6 +335,32 @@ impl Globals {
             _ => {}
         }
     }
+
+    /// Sets inputs and memory to what a process image has: before a scan.
+    #[rustfmt::skip]
+    pub fn read_image(&mut self, image: &impl firmware::ProcessImage) {
+        use firmware::{Area, Place, Width};
+        let bits = u64::from(self.w) >> 8 & 255;
+        let changed_0 = image.changed(Place::new(Area::Memory, Width::Byte, 1), bits);
+        let bits = image.bits(Place::new(Area::Memory, Width::Word, 0));
+        self.w = bits as u16;
+        if let Some(bits) = changed_0 {
+            {
+                let bits = u64::from(self.w) & !65280 | (bits & 255) << 8;
+                self.w = bits as u16;
+            };
+        }
+    }
+
+    /// Writes outputs and memory to a process image: after a scan, and once before the first one.
+    #[rustfmt::skip]
+    pub fn write_image(&self, image: &mut impl firmware::ProcessImage) {
+        use firmware::{Area, Place, Width};
+        let bits = u64::from(self.w);
+        image.set_bits(Place::new(Area::Memory, Width::Word, 0), bits);
+        let bits = u64::from(self.w) >> 8 & 255;
+        image.set_bits(Place::new(Area::Memory, Width::Byte, 1), bits);
+    }
 }
 
 impl Default for Globals {

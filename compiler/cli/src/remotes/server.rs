@@ -4,10 +4,6 @@ use super::named;
 use staunch_build::Modbus;
 use staunch_host::{Line, Parity, Remote, Server, is_address_and_port};
 
-/// What is usual for Modbus RTU: "MODBUS over Serial Line V1.02", 2.5.1.
-const BAUD_RATE: u32 = 19200;
-const BAUD_RATES: std::ops::RangeInclusive<u32> = 300..=4_000_000;
-
 /// An error is the setting that is wrong, and why.
 pub fn of(modbus: &Modbus) -> Result<Server, (String, String)> {
     match (&modbus.server, &modbus.port) {
@@ -46,13 +42,14 @@ fn at_address(modbus: &Modbus, server: &str) -> Result<Server, (String, String)>
 
 fn line(modbus: &Modbus, port: &str) -> Result<Line, (String, String)> {
     let fail = |key: &str, text: String| (key.to_owned(), text);
-    if !port.starts_with('/') || port.contains(char::is_control) {
+    if !Line::is_port(port) {
         let text = format!("`{port}` is not the path of a serial port: write, for example, port = \"/dev/ttyUSB0\"");
         return Err(fail("port", text));
     }
-    let baud_rate = modbus.baud_rate.unwrap_or(BAUD_RATE.into());
-    let baud_rate = u32::try_from(baud_rate).ok().filter(|it| BAUD_RATES.contains(it)).ok_or_else(|| {
-        let (least, most) = (BAUD_RATES.start(), BAUD_RATES.end());
+    let usual = Line::at(port);
+    let baud_rate = modbus.baud_rate.unwrap_or(usual.baud_rate.into());
+    let baud_rate = u32::try_from(baud_rate).ok().filter(|it| Line::BAUD_RATES.contains(it)).ok_or_else(|| {
+        let (least, most) = (Line::BAUD_RATES.start(), Line::BAUD_RATES.end());
         fail(
             "baud-rate",
             format!("`baud-rate` is a number from {least} to {most}, as 9600 or 19200, and not {baud_rate}"),
@@ -65,19 +62,20 @@ fn line(modbus: &Modbus, port: &str) -> Result<Line, (String, String)> {
         ));
     }
     let stop_bits = match modbus.stop_bits {
-        None | Some(1) => 1,
+        None => usual.stop_bits,
+        Some(1) => 1,
         Some(2) => 2,
         Some(other) => return Err(fail("stop-bits", format!("`stop-bits` is 1 or 2, and not {other}"))),
     };
-    let parity = named(&Parity::ALL, modbus.parity.as_deref()).unwrap_or(Parity::Even);
-    Ok(Line { port: port.to_owned(), baud_rate, parity, stop_bits })
+    let parity = named(&Parity::ALL, modbus.parity.as_deref()).unwrap_or(usual.parity);
+    Ok(Line { baud_rate, parity, stop_bits, ..usual })
 }
 
 /// The unit: on a serial line, 0 stands for all units, none of which answers, and from 248 on numbers are reserved.
 pub fn unit(modbus: &Modbus, server: &Server) -> Result<u8, (String, String)> {
     let (least, most) = match server {
         Server::Tcp(_) => (0, 255),
-        Server::Serial(_) => (1, 247),
+        Server::Serial(_) => (*Line::UNITS.start(), *Line::UNITS.end()),
     };
     let unit = modbus.unit.unwrap_or(1);
     u8::try_from(unit).ok().filter(|it| (least..=most).contains(it)).ok_or_else(|| {

@@ -1,6 +1,8 @@
-//! Inputs and outputs of a running program: Modbus, and a process image in shared memory (`docs/io.md`).
+//! Inputs and outputs of a running program: Modbus, lines, and a process image in shared memory (`docs/io.md`).
 
 mod client;
+mod emitted;
+mod gpio;
 mod layout;
 mod modbus;
 mod serial;
@@ -130,7 +132,7 @@ fn what_cannot_be_connected_is_refused() {
     let address = taken.local_addr().unwrap();
     let answers: [&dyn Fn(&str) -> String; 2] = [&plant, &run];
     for answer in answers {
-        has(&answer("--io opcua:x"), &["`opcua:x`", "write shm:NAME or modbus:ADDRESS:PORT"]);
+        has(&answer("--io opcua:x"), &["`opcua:x`", "write shm:NAME, modbus:ADDRESS:PORT or modbus-rtu:PORT"]);
         has(&answer("--io shm:a/b"), &["`a/b` is not a name in /dev/shm"]);
         has(&answer("--io modbus:502"), &["modbus:127.0.0.1:502"]);
         has(&answer("--io shm:x --io-stop keep"), &["there are zero and hold"]);

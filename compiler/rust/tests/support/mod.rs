@@ -31,7 +31,7 @@ pub fn agree(name: &str, st: &str) -> String {
     let folder = folder(name);
     write_crate(&folder, &program, &text);
     lint(&folder);
-    link_without_panics(&folder);
+    link_without_panics(&folder, MAIN_PROBE);
     assert_eq!(run_rust(&folder), run_interpreter(&program), "{text}");
     text
 }
@@ -204,11 +204,20 @@ pub fn cannot_panic(name: &str, st: &str) {
     let program = program(st);
     let folder = folder(name);
     write_crate(&folder, &program, &emit(&program, &Options::default()));
-    link_without_panics(&folder);
+    link_without_panics(&folder, MAIN_PROBE);
 }
 
-fn link_without_panics(folder: &Path) {
-    std::fs::write(folder.join("probe.rs"), PROBE).expect("the probe's file");
+/// Links a `main` that has the program as `code`.
+pub fn cannot_panic_in(name: &str, st: &str, main: &str) {
+    let program = program(st);
+    let folder = folder(name);
+    write_crate(&folder, &program, &emit(&program, &Options::default()));
+    lint(&folder);
+    link_without_panics(&folder, main);
+}
+
+fn link_without_panics(folder: &Path, main: &str) {
+    std::fs::write(folder.join("probe.rs"), format!("{PROBE}{main}")).expect("the probe's file");
     let mut command = rustc("rustc", folder, "probe.rs");
     command.args(["-O", "-C", "panic=abort", "-C", "link-args=-Wl,--gc-sections -lc", "--crate-name", "probe", "-o"]);
     succeed(command.arg(folder.join("probe")));
@@ -218,18 +227,6 @@ const PROBE: &str = r#"#![no_std]
 #![no_main]
 mod code;
 mod glue;
-
-static mut MACHINE: core::mem::MaybeUninit<glue::Machine> = core::mem::MaybeUninit::zeroed();
-
-#[unsafe(no_mangle)]
-extern "C" fn main(count: i32, time: i64) -> i32 {
-    let at = (&raw mut MACHINE).cast::<u8>();
-    let cx = staunch_runtime::Context::new(time, count == 1);
-    unsafe {
-        glue::staunch_init(at);
-        i32::from(glue::staunch_scan(at, &cx, count.unsigned_abs() / 2) != 0)
-    }
-}
 
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
@@ -241,6 +238,20 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 
 #[unsafe(no_mangle)]
 extern "C" fn rust_eh_personality() {}
+"#;
+
+const MAIN_PROBE: &str = r#"
+static mut MACHINE: core::mem::MaybeUninit<glue::Machine> = core::mem::MaybeUninit::zeroed();
+
+#[unsafe(no_mangle)]
+extern "C" fn main(count: i32, time: i64) -> i32 {
+    let at = (&raw mut MACHINE).cast::<u8>();
+    let cx = staunch_runtime::Context::new(time, count == 1);
+    unsafe {
+        glue::staunch_init(at);
+        i32::from(glue::staunch_scan(at, &cx, count.unsigned_abs() / 2) != 0)
+    }
+}
 "#;
 
 /// The folder of the runtime's library, built once.

@@ -6,19 +6,12 @@
 mod layout;
 mod link;
 mod plan;
-mod port;
 mod rtu;
 mod shared;
 mod tcp;
 mod trouble;
 mod wire;
 mod worker;
-
-#[cfg(target_os = "linux")]
-mod serial;
-#[cfg(not(target_os = "linux"))]
-#[path = "client/no_serial.rs"]
-mod serial;
 
 use super::attachment::{Attachment, Ended};
 use super::options::AtEnd;
@@ -29,6 +22,7 @@ use crate::{Error, Machine};
 pub use layout::openplc_layout;
 use plan::Plan;
 pub use plan::{Mistake, check_remotes};
+pub(super) use plan::{input_places, values};
 use shared::{Account, Shared};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -122,7 +116,7 @@ impl Attachment for Client {
         if !self.shared.is_fatal.load(Ordering::Relaxed) {
             return None;
         }
-        let trouble = self.shared.account().trouble.clone();
+        let trouble = format!("{} (on-loss = \"fault\")", self.shared.account().trouble);
         Some(Error::Connection { name: self.label.clone(), trouble })
     }
 

@@ -1,4 +1,4 @@
-//! The layout of a process image in shared memory, version 1, and its two counters.
+//! A process image in shared memory, version 1: a header with two counters, and the areas, whose layout is [`Place`]'s.
 //!
 //! A counter is odd while the values that it stands for are being written (a seqlock): nobody waits for anybody. Who reads them looks at
 //! the counter before and after, and reads again if it was odd or has changed. The program counts for outputs and memory, the world
@@ -6,7 +6,8 @@
 //! the middle delays nothing.
 
 use super::mapping::Mapping;
-use super::points::{Area, BITS, NUMBERS, Point, Width};
+use super::points::{Area, Point};
+use staunch_runtime::firmware::Place;
 use std::io;
 use std::sync::atomic::{Ordering, fence};
 
@@ -22,11 +23,7 @@ const STATE_AT: usize = 32;
 const PROCESS_AT: usize = 36;
 const HEADER: usize = 64;
 
-const BYTES: usize = BITS;
-const WORDS: usize = BYTES + NUMBERS;
-const DOUBLES: usize = WORDS + 2 * NUMBERS;
-const LONGS: usize = DOUBLES + 4 * NUMBERS;
-const AREA: usize = LONGS + 8 * NUMBERS;
+const AREA: usize = Place::AREA_SIZE;
 const SIZE: usize = HEADER + 3 * AREA;
 
 /// How often inputs that change while they are read are read again.
@@ -52,14 +49,7 @@ pub(super) fn place(point: &Point) -> usize {
         Area::Output => 1,
         Area::Memory => 2,
     };
-    let table = match point.width {
-        Width::Bit => 0,
-        Width::Byte => BYTES,
-        Width::Word => WORDS,
-        Width::Double => DOUBLES,
-        Width::Long => LONGS,
-    };
-    HEADER + area * AREA + table + point.number * point.width.size()
+    HEADER + area * AREA + Place::new(point.area, point.width, point.number).at()
 }
 
 impl Image {

@@ -3,46 +3,15 @@
 use crate::Machine;
 use crate::map::{Map, Type, Variable};
 use staunch_runtime::Elementary;
+use staunch_runtime::firmware::Place;
+pub(super) use staunch_runtime::firmware::{Area, Width};
 
-/// Numbers of each width of an area, as OpenPLC's runtime has them.
-pub(super) const NUMBERS: usize = 1024;
+/// Numbers of each width of an area.
+pub(super) const NUMBERS: usize = Width::Word.count();
 /// Bits of an area.
-pub(super) const BITS: usize = NUMBERS * 8;
+pub(super) const BITS: usize = Width::Bit.count();
 /// Names that a note lists.
 const SHOWN: usize = 5;
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Area {
-    Input,
-    Output,
-    Memory,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Width {
-    Bit,
-    Byte,
-    Word,
-    Double,
-    Long,
-}
-
-impl Width {
-    /// Bytes of a value.
-    pub fn size(self) -> usize {
-        match self {
-            Self::Bit | Self::Byte => 1,
-            Self::Word => 2,
-            Self::Double => 4,
-            Self::Long => 8,
-        }
-    }
-
-    /// How many numbers an area has of it.
-    pub fn count(self) -> usize {
-        if self == Self::Bit { BITS } else { NUMBERS }
-    }
-}
 
 /// One value at an address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -137,12 +106,11 @@ impl Points {
     fn add(&mut self, map: &Map, variable: &Variable, address: &str, base: usize) {
         let name = format!("{} ({address})", map.name_of_global(&variable.name));
         let mut values = Vec::new();
-        let placed = parse(address).filter(|(_, width, first)| {
-            let limit = width.count().saturating_sub(*first);
-            leaves(map, variable.ty, base + variable.offset, limit, &mut values)
-                && values.iter().all(|(ty, _)| fits(map, *ty, *width))
+        let placed = Place::parse(address).filter(|place| {
+            leaves(map, variable.ty, base + variable.offset, place.room(), &mut values)
+                && values.iter().all(|(ty, _)| fits(map, *ty, *place))
         });
-        let Some((area, width, first)) = placed else {
+        let Some(Place { area, width, number: first }) = placed else {
             self.unplaced.push(name);
             return;
         };
@@ -169,32 +137,6 @@ impl Points {
     }
 }
 
-/// `%QX1.3` is an output, a bit, and the number 11. `None` for the address of a module, `%IW1.2.3`, and for one that is too high.
-fn parse(address: &str) -> Option<(Area, Width, usize)> {
-    let mut letters = address.strip_prefix('%')?.chars();
-    let area = match letters.next()? {
-        'I' => Area::Input,
-        'Q' => Area::Output,
-        'M' => Area::Memory,
-        _ => return None,
-    };
-    let width = match letters.next()? {
-        'X' => Width::Bit,
-        'B' => Width::Byte,
-        'W' => Width::Word,
-        'D' => Width::Double,
-        'L' => Width::Long,
-        _ => return None,
-    };
-    let numbers: Option<Vec<usize>> = letters.as_str().split('.').map(|it| it.parse().ok()).collect();
-    let number = match (width, numbers?.as_slice()) {
-        (Width::Bit, [byte, bit]) if *bit < 8 => byte.checked_mul(8)?.checked_add(*bit)?,
-        (Width::Byte | Width::Word | Width::Double | Width::Long, [number]) => *number,
-        _ => return None,
-    };
-    (number < width.count()).then_some((area, width, number))
-}
-
 /// The values of a variable, of an array one after the other. `false` where there are more than `limit`.
 fn leaves(map: &Map, ty: Type, offset: usize, limit: usize, values: &mut Vec<(Type, usize)>) -> bool {
     let Some(array) = map.array(ty) else {
@@ -206,10 +148,10 @@ fn leaves(map: &Map, ty: Type, offset: usize, limit: usize, values: &mut Vec<(Ty
 }
 
 /// A text and a structure have no place: their bytes are the compiler's affair.
-fn fits(map: &Map, ty: Type, width: Width) -> bool {
+fn fits(map: &Map, ty: Type, place: Place) -> bool {
     match ty {
-        Type::Elementary(Elementary::Bool) | Type::Bit(_) => width == Width::Bit,
-        Type::Elementary(_) | Type::Enum(_) => width != Width::Bit && map.size_of(ty) == width.size(),
+        Type::Elementary(Elementary::Bool) | Type::Bit(_) => place.holds(true, 1),
+        Type::Elementary(_) | Type::Enum(_) => place.holds(false, map.size_of(ty)),
         Type::String(_) | Type::Characters(_) | Type::Array(_) | Type::Struct(_) | Type::Block(_) | Type::Reference => {
             false
         }

@@ -2,15 +2,12 @@
 //! has left. They were started before the scans, so they have no priority, and the scans do not wait for them.
 
 use super::attachment::{Attachment, Ended};
-use super::exchange::Exchange;
 use super::options::AtEnd;
-use super::pdu;
-use super::points::{Area, Point, Points};
-use super::registers::{Registers, place};
+use super::points::Points;
+use super::served::Served;
 use crate::{Error, Machine};
 use std::io::{self, Read as _, Write as _};
 use std::net::{Ipv4Addr, Ipv6Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -32,7 +29,6 @@ const LENGTHS: std::ops::RangeInclusive<usize> = 2..=254;
 
 #[derive(Debug)]
 pub(super) struct Modbus {
-    points: Vec<Point>,
     shared: Arc<Shared>,
     at_end: AtEnd,
     address: SocketAddr,
@@ -42,11 +38,8 @@ pub(super) struct Modbus {
 
 #[derive(Debug)]
 struct Shared {
-    exchange: Exchange,
-    /// One request at a time.
-    registers: Mutex<Registers>,
+    served: Served,
     clients: Mutex<Vec<Client>>,
-    is_over: AtomicBool,
 }
 
 #[derive(Debug)]
@@ -66,17 +59,11 @@ impl Modbus {
         if !quiet || address.ends_with(":0") {
             crate::error::tell(format_args!("note: modbus: listening on {bound}"));
         }
-        let points: Vec<Point> = points.all.iter().filter(|it| place(it).is_some()).copied().collect();
-        let shared = Arc::new(Shared {
-            exchange: Exchange::new(points.len()),
-            registers: Mutex::new(Registers::new(&points)),
-            clients: Mutex::new(Vec::new()),
-            is_over: AtomicBool::new(false),
-        });
+        let shared = Arc::new(Shared { served: Served::new(points), clients: Mutex::new(Vec::new()) });
         let own = Arc::clone(&shared);
         let started = thread::Builder::new().name("modbus".to_owned()).spawn(move || take_clients(&listener, &own));
         started.map_err(refused)?;
-        Ok(Self { points, shared, at_end, address: bound, request: 0 })
+        Ok(Self { shared, at_end, address: bound, request: 0 })
     }
 }
 
@@ -101,20 +88,20 @@ fn refusal(address: &str, error: &io::Error) -> String {
 
 impl Attachment for Modbus {
     fn before(&mut self, machine: &mut dyn Machine) {
-        if let Some(request) = self.shared.exchange.take(&self.points, machine) {
+        if let Some(request) = self.shared.served.take(machine) {
             self.request = request;
         }
     }
 
     fn after(&mut self, state: &[u8]) {
-        self.shared.exchange.show(self.request, |at| self.points[at].read(state));
+        self.shared.served.show(self.request, state);
     }
 
     fn end(&mut self, _: Ended) {
         if self.at_end == AtEnd::Zero {
-            self.shared.show_zero(&self.points, self.request);
+            self.shared.served.show_zero(self.request);
         }
-        self.shared.is_over.store(true, Ordering::Relaxed);
+        self.shared.served.end();
         for client in self.shared.clients().drain(..) {
             let _ = client.stream.shutdown(Shutdown::Both);
         }
@@ -132,17 +119,6 @@ impl Attachment for Modbus {
 impl Shared {
     fn clients(&self) -> MutexGuard<'_, Vec<Client>> {
         self.clients.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn is_over(&self) -> bool {
-        self.is_over.load(Ordering::Relaxed)
-    }
-
-    /// Outputs are 0, and the rest is as the last scan left it.
-    fn show_zero(&self, points: &[Point], request: u64) {
-        let mut last = vec![0; points.len()];
-        self.exchange.see_newer(0, |shown| last.clone_from(&shown.values));
-        self.exchange.show(request, |at| if points[at].area == Area::Output { 0 } else { last[at] });
     }
 
     /// Room for one more.
@@ -167,11 +143,7 @@ impl Shared {
         }
         answer.clear();
         answer.extend_from_slice(&request[..HEADER]);
-        let mut registers = self.registers.lock().unwrap_or_else(PoisonError::into_inner);
-        registers.update(&self.exchange);
-        pdu::answer(&request[HEADER..], &mut registers, answer);
-        registers.hand_over(&self.exchange);
-        drop(registers);
+        self.served.answer(&request[HEADER..], answer);
         let length = (answer.len() - HEADER + 1) as u16;
         answer[4..6].copy_from_slice(&length.to_be_bytes());
     }
@@ -180,7 +152,7 @@ impl Shared {
 fn take_clients(listener: &TcpListener, shared: &Arc<Shared>) {
     for number in 0.. {
         let taken = listener.accept();
-        if shared.is_over() {
+        if shared.served.is_over() {
             return;
         }
         match taken.and_then(|(stream, _)| Ok((stream.try_clone()?, stream))) {
@@ -221,7 +193,7 @@ fn serve(shared: &Shared, number: u64, mut stream: TcpStream) -> io::Result<()> 
         }
         let end = HEADER - 1 + length;
         read(shared, &mut stream, &mut request[HEADER..end], Some(began))?;
-        while !shared.exchange.is_shown() && !shared.is_over() {
+        while !shared.served.is_shown() && !shared.served.is_over() {
             thread::sleep(Duration::from_millis(1));
         }
         shared.answer(number, &request[..end], &mut answer);
@@ -241,7 +213,7 @@ fn read(shared: &Shared, stream: &mut TcpStream, buffer: &mut [u8], began: Optio
                 _ => return Err(error),
             },
         }
-        if shared.is_over() || began.is_some_and(|it| it.elapsed() > PATIENCE) {
+        if shared.served.is_over() || began.is_some_and(|it| it.elapsed() > PATIENCE) {
             return Err(io::ErrorKind::TimedOut.into());
         }
     }

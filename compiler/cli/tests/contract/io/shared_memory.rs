@@ -8,9 +8,11 @@ use std::os::unix::fs::FileExt as _;
 use std::path::PathBuf;
 
 const SIZE: u64 = 70_720;
-const INPUTS: u64 = 64;
-const OUTPUTS: u64 = 64 + 23_552;
-const MEMORY: u64 = 64 + 2 * 23_552;
+pub const INPUTS: u64 = 64;
+pub const OUTPUTS: u64 = 64 + 23_552;
+pub const MEMORY: u64 = 64 + 2 * 23_552;
+/// Bytes of an area.
+pub const AREA: usize = 23_552;
 const WORDS: u64 = 9216;
 const DOUBLES: u64 = 11_264;
 const LONGS: u64 = 15_360;
@@ -21,7 +23,7 @@ const SCANS: u64 = 24;
 const STATE: u64 = 32;
 
 /// The image, as another process sees it.
-struct Image(PathBuf, File);
+pub struct Image(PathBuf, File);
 
 impl Drop for Image {
     fn drop(&mut self) {
@@ -30,12 +32,12 @@ impl Drop for Image {
 }
 
 /// A name that no other test has.
-fn name(of: &str) -> String {
+pub fn name(of: &str) -> String {
     format!("staunch-test-{}-{of}", std::process::id())
 }
 
 impl Image {
-    fn open(name: &str) -> Self {
+    pub fn open(name: &str) -> Self {
         let path = PathBuf::from("/dev/shm").join(name);
         until("the image exists", || std::fs::metadata(&path).is_ok_and(|it| it.len() == SIZE));
         let file = OpenOptions::new().read(true).write(true).open(&path).unwrap();
@@ -56,16 +58,29 @@ impl Image {
         self.1.write_all_at(bytes, at).unwrap();
     }
 
-    fn scan(&self) {
+    /// Writes several places, which a scan has all or none of.
+    pub fn together(&self, all: &[(u64, &[u8])]) {
+        let even = self.number::<4>(INPUT_COUNTER);
+        let counted = |by| u32::try_from(even + by).unwrap().to_le_bytes();
+        self.write(INPUT_COUNTER, &counted(1));
+        all.iter().for_each(|(at, bytes)| self.write(*at, bytes));
+        self.write(INPUT_COUNTER, &counted(2));
+    }
+
+    pub fn bytes(&self, at: u64, count: usize) -> Vec<u8> {
+        let mut bytes = vec![0; count];
+        self.1.read_exact_at(&mut bytes, at).unwrap();
+        bytes
+    }
+
+    pub fn scan(&self) {
         let scans = self.number::<8>(SCANS);
         until("two scans end", || self.number::<8>(SCANS) >= scans + 2);
     }
 
     /// Bytes of all outputs that are not 0.
     fn outputs(&self) -> usize {
-        let mut bytes = vec![0; 23_552];
-        self.1.read_exact_at(&mut bytes, OUTPUTS).unwrap();
-        bytes.iter().filter(|it| **it != 0).count()
+        self.bytes(OUTPUTS, AREA).iter().filter(|it| **it != 0).count()
     }
 }
 

@@ -1,9 +1,9 @@
 //! What carries requests to a server and its answers back: a connection over the network, or a serial line.
 
 use super::rtu::Rtu;
-use super::serial::Serial;
 use super::tcp::Tcp;
 use super::trouble::Trouble;
+use crate::attachments::line::Serial;
 use crate::remote::Server;
 use std::time::Duration;
 

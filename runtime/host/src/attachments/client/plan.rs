@@ -99,6 +99,12 @@ pub fn check_remotes(all: &[Remote], map: &Map) -> Result<(), (usize, Mistake)> 
     Ok(())
 }
 
+/// Where a server's inputs are in the state, if there is nothing wrong with it.
+pub(in crate::attachments) fn input_places(remote: &Remote, map: &Map, points: &Points) -> Vec<(usize, Option<u8>)> {
+    let plan = Plan::of(remote, map, points).unwrap_or_default();
+    plan.named_inputs.into_iter().map(|(_, offset, bit)| (offset, bit)).collect()
+}
+
 impl Plan {
     pub fn of(remote: &Remote, map: &Map, points: &Points) -> Result<Self, Mistake> {
         let mut plan = Self::default();
@@ -158,7 +164,7 @@ fn start(place: &str) -> Result<Start, String> {
 }
 
 /// The values of a variable, of an array one after the other.
-pub(super) fn values(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
+pub(in crate::attachments) fn values(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
     let all: Vec<usize> = (0..map.instances.len()).collect();
     let place = path::resolve(map, &all, name)?;
     let end = place.offset + map.size_of(place.ty).max(1);

@@ -1,33 +1,19 @@
-//! Frames of Modbus RTU, as "MODBUS over Serial Line Specification and Implementation Guide V1.02" has them: a unit, a request or answer,
-//! and a CRC, with silence before and after.
+//! Requests of Modbus RTU and their answers.
 //!
 //! No number connects an answer with its request. So what comes before a request is sent is dropped, the line is silent then, and an
 //! answer counts only if its unit, function, length and CRC are those that are expected; one to a write repeats what was written, too.
 
-use super::port::Port;
 use super::trouble::Trouble;
+use crate::attachments::line::{MOST, PAUSE, Port, Timing, close, is_whole};
 use crate::attachments::pdu::function;
-use crate::remote::{Line, Parity};
+use crate::remote::Line;
 use std::io;
 use std::time::{Duration, Instant};
-
-/// Bytes of a frame.
-const MOST: usize = 256;
-/// A unit, a function and a CRC.
-const LEAST: usize = 4;
-/// Silence that ends a frame which is not the expected one, and before which a short one is not over. 3.5 characters are less, but an adapter at
-/// USB hands bytes over every 16 ms, and a thread may have to wait for a processor.
-const PAUSE: Duration = Duration::from_millis(50);
-/// Above 19200 bits a second, the specification has this silence between frames, and not that of 3.5 characters (2.5.1.1).
-const LEAST_SILENCE: Duration = Duration::from_micros(1750);
 
 #[derive(Debug)]
 pub(super) struct Rtu<P> {
     port: P,
-    /// How long a byte is on the line.
-    character: Duration,
-    /// Between two frames.
-    silence: Duration,
+    timing: Timing,
     /// When the last byte was on the line.
     last: Instant,
     frame: Vec<u8>,
@@ -65,14 +51,7 @@ fn damaged(text: impl Into<String>) -> Trouble {
 
 impl<P: Port> Rtu<P> {
     pub fn new(port: P, line: &Line) -> Self {
-        let parity = u32::from(line.parity != Parity::None);
-        let bits = 1 + 8 + parity + u32::from(line.stop_bits);
-        let character = Duration::from_secs(1) * bits / line.baud_rate;
-        let silence = match line.baud_rate {
-            0..=19200 => character * 7 / 2,
-            _ => LEAST_SILENCE,
-        };
-        Self { port, character, silence, last: Instant::now(), frame: Vec::with_capacity(2 * MOST) }
+        Self { port, timing: Timing::of(line), last: Instant::now(), frame: Vec::with_capacity(2 * MOST) }
     }
 
     /// Sends a request to a unit, and appends its answer. The timeout is the unit's: what the bytes take on the line is added.
@@ -83,13 +62,14 @@ impl<P: Port> Rtu<P> {
         request: &[u8],
         answer: &mut Vec<u8>,
     ) -> Result<(), Trouble> {
-        self.settle(self.last + self.silence, self.silence, Instant::now() + timeout)?;
+        let Timing { character, silence } = self.timing;
+        self.settle(self.last + silence, silence, Instant::now() + timeout)?;
         self.frame.clear();
         self.frame.push(unit);
         self.frame.extend(request);
-        self.frame.extend(crc(&self.frame).to_le_bytes());
+        close(&mut self.frame);
         let expected = Expected { unit, request, length: 1 + answer_length(request) + 2 };
-        let on_line = self.character * (self.frame.len() + expected.length) as u32;
+        let on_line = character * (self.frame.len() + expected.length) as u32;
         let deadline = Instant::now() + timeout + on_line;
         self.port.send(&self.frame, deadline).map_err(gone)?;
         let received = self.answer(&expected, deadline);
@@ -210,18 +190,6 @@ fn answer_length(request: &[u8]) -> usize {
         function::READ_HOLDING_REGISTERS | function::READ_INPUT_REGISTERS => 2 + 2 * count(),
         _ => 5,
     }
-}
-
-fn is_whole(frame: &[u8]) -> bool {
-    // The CRC of a frame and its own CRC is 0.
-    frame.len() >= LEAST && crc(frame) == 0
-}
-
-/// The CRC of a frame: 2.5.1.2, with its low byte first on the line.
-fn crc(bytes: &[u8]) -> u16 {
-    const POLYNOMIAL: u16 = 0xA001;
-    let shifted = |crc: u16| if crc & 1 == 0 { crc >> 1 } else { crc >> 1 ^ POLYNOMIAL };
-    bytes.iter().fold(0xFFFF, |crc, byte| (0..8).fold(crc ^ u16::from(*byte), |crc, _| shifted(crc)))
 }
 
 #[cfg(test)]

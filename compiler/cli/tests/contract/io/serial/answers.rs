@@ -2,16 +2,9 @@
 
 use super::super::modbus::{COILS, Client, INPUT};
 use super::super::until;
-use super::{Line, PLANT, run, unanswered};
+use super::{Line, PLANT, framed, run, unanswered};
 use crate::{Folder, has};
 use std::time::Duration;
-
-/// With its CRC.
-fn framed(body: &[u8]) -> Vec<u8> {
-    let shifted = |crc: u16| if crc & 1 == 0 { crc >> 1 } else { crc >> 1 ^ 0xA001 };
-    let crc = body.iter().fold(0xFFFF, |crc, byte| (0..8).fold(crc ^ u16::from(*byte), |crc, _| shifted(crc)));
-    [body, &crc.to_le_bytes()].concat()
-}
 
 /// What the next request is answered with.
 enum Reply {

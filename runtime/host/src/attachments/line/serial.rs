@@ -78,7 +78,7 @@ unsafe extern "C" {
 }
 
 #[derive(Debug)]
-pub(super) struct Serial(File);
+pub(in crate::attachments) struct Serial(File);
 
 impl Serial {
     /// Opens the port, which this process alone then has locked.
