@@ -378,6 +378,7 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::Odd => (Code::E0033, "correct it in the original system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
         Trouble::Open => (Code::E0003, "close it where it ends"),
+        Trouble::SecondEnd => (Code::E0015, "delete it: the file itself ends the unit"),
         Trouble::OtherOrder => (
             Code::W0528,
             "OpenPLC Editor before it was in Python 3, and Beremiz before April 2023, go from top to bottom: check which order is \

@@ -619,6 +619,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 Diagnostic::new(Code::E0406, span, "the bounds of an array are in the wrong order")
                     .label(format!("{low} is above {high}"))
+                    .help(format!("write `{high}..{low}`"))
                     .fix(span, format!("{high}..{low}")),
             );
             return None;

@@ -63,7 +63,7 @@ fn two_names(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 /// The type here that a word of another language is.
-fn type_of_ours(word: &str) -> Option<&'static str> {
+pub fn type_of_ours(word: &str) -> Option<&'static str> {
     let types = [
         ("int", "DINT"),
         ("integer", "DINT"),
