@@ -3,8 +3,8 @@
 use crate::documents::wrapped;
 use staunch_frontend::{Code, Dialect, Options, Severity, Source, Sources};
 
-/// What no text shows that a test could read: of a file of 4 GiB, the page has the commands.
-const WITHOUT_A_TEXT: [Code; 1] = [Code::E0031];
+/// What no program alone shows: of a file of 4 GiB, the page has the commands, and of a stimulus, the table.
+const WITHOUT_A_TEXT: [Code; 2] = [Code::E0031, Code::W0522];
 
 #[test]
 fn pages_show_what_they_say() {

@@ -39,6 +39,7 @@ mod manual;
 mod new;
 
 mod output;
+mod overwritten;
 mod scratch;
 mod systemd;
 

@@ -299,6 +299,26 @@ impl Session {
         Ok(session)
     }
 
+    /// Prints what was found after the sources were compiled; whether none of it is an error.
+    pub fn report(&self, found: Vec<Diagnostic>) -> Result<bool, String> {
+        let levels = levels(&self.common, &self.project)?;
+        let found = staunch_frontend::allowed(&self.sources, found);
+        let found: Vec<_> = found.into_iter().filter_map(|it| levels.apply(it)).collect();
+        let errors = found.iter().filter(|it| it.severity == Severity::Error).count();
+        if !found.is_empty() {
+            self.print(&found, errors)?;
+        }
+        Ok(errors == 0)
+    }
+
+    /// The statement at a place, as far as it is on its first line.
+    pub fn statement_at(&self, at: Location) -> Span {
+        let source = self.sources.get(at.file);
+        let first = self.sources.file(at.file).statement_at(at);
+        let offset = |it: u32| source.in_text(it).unwrap_or(it);
+        Span { file: at.file, start: offset(first.start), end: offset(first.end) }
+    }
+
     /// Prints what is not `known`, and counts the errors.
     fn accept(&mut self, compilation: Compilation, levels: &Levels, known: &[Diagnostic]) -> Result<usize, String> {
         let diagnostics: Vec<_> = compilation.diagnostics.into_iter().filter_map(|it| levels.apply(it)).collect();

@@ -368,6 +368,17 @@ fn at_the_end_of_a_body(it: &mut Diagnostic, source: &Source) {
     }
 }
 
+/// Of lints that were found outside of the front end, those that no `{allow …}` in the sources covers.
+pub fn allowed(sources: &Sources, mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    if !found.is_empty() {
+        let numbers = (0..).take(sources.files().len());
+        let files: Vec<_> = numbers.map(|it| parse_file(sources, it)).collect();
+        let allowances = allow::Allowances::read(&files, &mut Vec::new());
+        found.retain(|it| !allowances.cover(it));
+    }
+    found
+}
+
 /// What reading a file of another system's has found.
 fn problem(file: u16, problem: &Problem) -> Diagnostic {
     let span = Span { file, start: problem.at, end: problem.at + 1 };

@@ -53,6 +53,20 @@ fn project(name: &str) -> Folder {
     folder
 }
 
+/// In an object of JSON, `rendered` is what a person sees: it has the same places, and the same help.
+#[test]
+fn json_shows_places_of_vendors_files_as_people_see_them() {
+    let folder = project("json_vendor");
+    folder.write("POUs/MAIN.TcPOU", &MAIN.replace("go := pulse", "go := pluse"));
+    let err = folder.staunch("check Line.plcproj").err(1);
+    let out = folder.staunch("check Line.plcproj --message-format json").out(1);
+    let diagnostic: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
+    let rendered = diagnostic["rendered"].as_str().unwrap();
+    assert!(err.starts_with(rendered), "{err}\nand\n{rendered}");
+    has(rendered, "MAIN.TcPOU:13:");
+    has(rendered, "did you mean `pulse`?");
+}
+
 #[test]
 fn a_project_of_twincat_is_written_as_structured_text() {
     let folder = project("converted");

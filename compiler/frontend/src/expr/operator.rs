@@ -290,18 +290,21 @@ impl<'s> Checker<'_, 's> {
                 Some(format!("write `{}`", converted(sides, it, as_number(it).name(), a, b)))
             }
             (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
-                let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
-                let bits = bits[usize::try_from(it.repr().size().trailing_zeros()).unwrap_or(0)];
-                Some(format!("write `{}`", converted(sides, it, bits, a, b)))
+                Some(format!("write `{}`", converted(sides, it, as_bits(it), a, b)))
             }
             (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_integer() && x == y && is_junction(sides.op) => {
                 let op = sides.op.text();
-                Some(format!("for bits, convert both: `INT_TO_WORD(…)`; for conditions, compare: `{a} <> 0 {op} {b} <> 0`"))
+                let (x, bits) = (x.name(), as_bits(x));
+                Some(format!(
+                    "for bits, convert both with `{x}_TO_{bits}(…)`; for conditions, compare: `{a} <> 0 {op} {b} <> 0`"
+                ))
             }
             (Some(Type::Elementary(x)), _) if x.is_real() && sides.op == BinaryOp::Mod => {
                 Some(format!("write `{a} - {b} * DINT_TO_{}(TRUNC({a} / {b}))`", x.name()))
             }
-            (Some(Type::BOOL), Some(Type::Elementary(_))) if let Some(middle) = last_operand(a) => {
+            (Some(Type::BOOL), Some(Type::Elementary(_)))
+                if let (Some(middle), false) = (last_operand(a), is_junction(sides.op)) =>
+            {
                 Some(format!("compare twice: `{a} AND {middle} {} {b}`", sides.op.text()))
             }
             (Some(Type::Elementary(it)), None) if it.is_duration() => Some(format!("write the unit: `T#{b}ms`")),
@@ -749,6 +752,12 @@ pub(super) fn arithmetic_op(op: BinaryOp) -> Op {
         BinaryOp::Div => Op::Div,
         _ => Op::Mod,
     }
+}
+
+/// The bit string of as many bits as an integer.
+fn as_bits(integer: Elementary) -> &'static str {
+    let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
+    bits[usize::try_from(integer.repr().size().trailing_zeros()).unwrap_or(0)]
 }
 
 /// The right side of a comparison of names and numbers.

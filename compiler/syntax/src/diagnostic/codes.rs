@@ -189,6 +189,7 @@ codes! {
     W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
     W0521 Warning "a shift that C leaves undefined";
+    W0522 Warning "a stimulus that the program overwrites";
     W0523 Warning "division by the constant 0";
     W0524 Warning "immediate values give more than a DINT holds";
     W0525 Warning "a lower unit of a TIME overflows";

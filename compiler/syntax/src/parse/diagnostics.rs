@@ -98,7 +98,7 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         (Expected::Action, _) if is_operator(found) => {
             Diagnostic::new(Code::E0001, span, "a statement assigns a value, or calls something")
                 .label("this only computes")
-                .help("write `x := …` before it, where its value is to go")
+                .help("assign what it computes: `x := …;`")
         }
         (Expected::Action, _) if found == Kind::Name && names_a_word_more(input, problem.at) => {
             return two_words(input, problem.at);

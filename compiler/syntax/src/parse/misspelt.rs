@@ -158,21 +158,14 @@ pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
     nearest_of(input.text(span), ITEMS)
 }
 
-/// `RETIAN` after `VAR`, on its line and before a declaration or one more such word.
+/// `RETIAN` after `VAR`, on its line.
 pub fn misspelt_qualifier(input: &mut In<'_, '_, '_>) -> Option<Kind> {
     let follows = matches!(input.kind_ahead(1), Kind::Name | Kind::Constant | Kind::Retain | Kind::Persistent);
-    let declares = matches!(input.kind_ahead(2), Kind::Colon) && !starts_next_line(input);
-    if input.kind() != Kind::Name || !follows || input.on_new_line() || declares {
+    if input.kind() != Kind::Name || !follows || input.on_new_line() {
         return None;
     }
     let span = input.here();
     nearest_of(input.text(span), QUALIFIERS)
-}
-
-fn starts_next_line(input: &mut In<'_, '_, '_>) -> bool {
-    let at = input.number();
-    let state = input.state();
-    state.breaks(state.place(at).end, state.place(at + 1).start)
 }
 
 /// Whether a name that is alone is a misspelt keyword.

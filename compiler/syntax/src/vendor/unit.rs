@@ -96,7 +96,7 @@ impl<'t> Unit<'t> {
             What::Unit => end(file, &self.declaration),
         };
         match self.own_end(file, end) {
-            Some(place) => out.problem(Trouble::SecondEnd, format!("this text has no `{end}` of its own"), &place),
+            Some(place) => out.problem(Trouble::SecondEnd, format!("`{end}` is not a part of this text"), &place),
             None => out.write(&format!("\n{end}\n"), &self.end),
         }
     }
