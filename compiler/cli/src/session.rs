@@ -95,7 +95,7 @@ impl Session {
     }
 
     /// The same program with stops before its statements, and what is asked there. The sources are those of the diagnostics,
-    /// which are about what is asked; the program is there only without them.
+    /// which are about what is asked; without them it has the program.
     pub fn with_stops(&self, asked: &[Asked<'_>]) -> Result<(Option<Program>, Vec<String>), String> {
         let own = self.sources.files().iter().filter(|it| !it.is_of_library()).count();
         let mut sources = self.sources.clone();

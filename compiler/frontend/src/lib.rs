@@ -90,7 +90,7 @@ impl Compilation {
         let renamed = self.diagnostics.iter().filter(|it| it.code == Code::W0609);
         self.renamed = renamed.filter_map(|it| it.fix.clone()).collect();
         self.diagnostics.retain(|it| !allowances.cover(it));
-        // A text of pieces is not in the order of its file, and may say twice what is there once: a contact on two wires.
+        // A text of pieces is not in the order of its file, and may repeat a part of it: a contact on two wires.
         let place = |it: &Diagnostic| sources.get(it.span.file).in_file(it.span);
         let mut seen = FxHashSet::default();
         self.diagnostics.retain(|it| {

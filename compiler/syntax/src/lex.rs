@@ -12,8 +12,8 @@ mod scan;
 pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
-pub use scan::Scanner;
 pub use literal::{DECIMAL, Fault, date, duration, integer, real, string};
+pub use scan::Scanner;
 
 use crate::{
     ast::Name,

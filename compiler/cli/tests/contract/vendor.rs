@@ -80,7 +80,7 @@ fn a_project_of_twincat_is_written_as_structured_text() {
     folder.write("words.st", "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE); w := c.CV; END_PROGRAM\n");
     folder.staunch("convert words.st -o named.st --dialect codesys").out(0);
     folder.staunch("check named.st").out(0);
-    // What is written is no source, and a program with a mistake is not written.
+    // The file that is written is not a source, and a program with a mistake is not written.
     has(&folder.staunch("convert line.st -o line.st").err(2), &["line.st"]);
     folder.write("wrong.st", "PROGRAM Main VAR n : INT; END_VAR n := m; END_PROGRAM");
     has(&folder.staunch("convert wrong.st -o other.st").err(1), &["`m` is not declared"]);

@@ -145,9 +145,8 @@ impl<'s> Checker<'_, 's> {
         let dialect = self.decl.dialect(span);
         let moved = self.arguments_by_own_names(id, arguments);
         let arguments = moved.as_deref().unwrap_or(arguments);
-        let given = self.bind(info.name, &parameters, arguments, |name| {
-            super::unresolved::unknown_pin(dialect, id, name)
-        })?;
+        let given =
+            self.bind(info.name, &parameters, arguments, |name| super::unresolved::unknown_pin(dialect, id, name))?;
         if self.decl.dialect(span).wants_all_positions() {
             self.require_all(info.name, &parameters, &given, arguments, |_, _| false, span)?;
         }

@@ -213,12 +213,14 @@ impl<'s> Checker<'_, 's> {
                         let meant = format!("{}_TO_{}({text})", it.name(), into.word());
                         error.help(format!("write `{meant}`")).fix(span, meant)
                     }
-                    (Type::String(_), Type::BOOL, None, Some(text)) => match text.trim_matches('\'').to_ascii_uppercase() {
-                        word if ["TRUE", "FALSE"].contains(&word.as_str()) => {
-                            error.help(format!("write `{word}`")).fix(span, word)
+                    (Type::String(_), Type::BOOL, None, Some(text)) => {
+                        match text.trim_matches('\'').to_ascii_uppercase() {
+                            word if ["TRUE", "FALSE"].contains(&word.as_str()) => {
+                                error.help(format!("write `{word}`")).fix(span, word)
+                            }
+                            _ => error,
                         }
-                        _ => error,
-                    },
+                    }
                     _ => error,
                 });
                 None

@@ -89,9 +89,12 @@ impl<'s> Checker<'_, 's> {
             let home = self.decl.pous[self.decl.home(slot)].ast;
             let error = match (home.extends, name) {
                 (Some(base), Some(name)) => {
-                    let error =
-                        Diagnostic::new(Code::E0107, name.span, format!("`{}` has no METHOD `{}`", base.text, name.text))
-                            .label("unknown member");
+                    let error = Diagnostic::new(
+                        Code::E0107,
+                        name.span,
+                        format!("`{}` has no METHOD `{}`", base.text, name.text),
+                    )
+                    .label("unknown member");
                     let inherited = self.decl.routines_of_base(slot);
                     match nearest(name.text, inherited.iter().map(|it| it.name.text)) {
                         Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),

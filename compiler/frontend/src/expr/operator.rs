@@ -82,7 +82,7 @@ impl<'s> Checker<'_, 's> {
         self.bits_of_side(found, left, op)
     }
 
-    /// NOT of a number without a type takes that of the bit string beside it. MATIEC compares a bit string with a call of SEL, MUX
+    /// NOT of a number without a type takes that of the bit string on the other side. MATIEC compares a bit string with a call of SEL, MUX
     /// and the like at its type, also where that is given numbers alone.
     fn bits_of_side(&self, ty: Option<Type>, side: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
         let is_matiec = self.decl.dialect(side.span).rules().functions.choice == Functions::OfMatiec;
@@ -292,7 +292,9 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
                 Some(format!("write `{}`", converted(sides, it, as_bits(it), a, b)))
             }
-            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_integer() && x == y && is_junction(sides.op) => {
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y)))
+                if x.is_integer() && x == y && is_junction(sides.op) =>
+            {
                 let op = sides.op.text();
                 let (x, bits) = (x.name(), as_bits(x));
                 Some(format!(

@@ -14,8 +14,8 @@ use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
-    Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Place, Projection, RefKind, RefType, ReferenceId, Section, Statement,
-    StatementKind, Type, Value, reference::is_null,
+    Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Place, Projection, RefKind, RefType, ReferenceId, Section,
+    Statement, StatementKind, Type, Value, reference::is_null,
 };
 
 /// The lower half of a reference's bits: its address.

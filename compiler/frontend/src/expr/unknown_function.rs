@@ -32,8 +32,8 @@ const OF_C: [(&str, &str); 22] = [
     ("PRINT", "a PLC program has no console: assign to a variable, and show it with `staunch run --vars`"),
     ("MEMCPY", "assign whole variables: `target := source;` copies an array or a structure"),
     ("MALLOC", "a PLC program has no heap: declare a variable, or an array of the most that is needed"),
-    ("SLEEP", "a scan does not wait: start a TON, and go on when its Q is TRUE"),
-    ("DELAY", "a scan does not wait: start a TON, and go on when its Q is TRUE"),
+    ("SLEEP", "a scan does not wait: start a TON, and continue when its Q is TRUE"),
+    ("DELAY", "a scan does not wait: start a TON, and continue when its Q is TRUE"),
     ("MILLIS", "measure with a TON, whose ET is the time since its IN became TRUE"),
 ];
 
@@ -76,8 +76,7 @@ impl<'s> Checker<'_, 's> {
             self.report_instruction(name);
         } else if let Some(error) = of_another_dialect(name) {
             self.report(error);
-        } else if let Some(counter) =
-            s5_counter(name.text).filter(|_| self.decl.dialect(name.span) == Dialect::Siemens)
+        } else if let Some(counter) = s5_counter(name.text).filter(|_| self.decl.dialect(name.span) == Dialect::Siemens)
         {
             self.report_s5_counter(name, counter);
         } else if let Some((why, instead)) = missing::function_of_s7(self.decl.dialect(name.span), name.text) {
@@ -102,8 +101,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn no_such_function(&self, name: ast::Name<'s>) -> Diagnostic {
-        let error = Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
-            .label("unknown name");
+        let error =
+            Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
+                .label("unknown name");
         let is_logix = self.decl.dialect(name.span).family() == Family::Logix;
         if let Some(meant) = logix_operands::of_ladder(name.text).filter(|_| is_logix) {
             error.note("it is an instruction of ladder").help(meant)

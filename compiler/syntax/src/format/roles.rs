@@ -52,6 +52,7 @@ pub fn roles(tokens: &[Token<'_>], blocks: &Blocks) -> Vec<Role> {
                 roles[at] = Role::Function;
             }
             Kind::Equal if !token.is_apart && is_bound(tokens, before, second) => roles[at] = Role::Glued,
+            _ if is_of_configuration(tokens, &inside, at, second) => roles[at] = Role::Word,
             Kind::Name => {
                 let declares = is_in_head || matches!(block, Some(Block::Declarations | Block::Type));
                 let before = before.map(|it| tokens[it].kind);
@@ -128,6 +129,23 @@ fn is_type(token: &Token<'_>, before: Option<Kind>) -> bool {
             || ["STRING", "WSTRING"].iter().any(|it| token.is_word(it))
     };
     is_expected && is_standard()
+}
+
+/// `ON` after the name of a RESOURCE, `TASK` before its name, and `PROGRAM … WITH` in a CONFIGURATION.
+fn is_of_configuration(tokens: &[Token<'_>], inside: &[Pair], at: usize, second: Option<usize>) -> bool {
+    if !inside.iter().any(|it| tokens[it.open].kind == Kind::Configuration) {
+        return false;
+    }
+    let token = &tokens[at];
+    let is_named = tokens.get(at + 1).is_some_and(|it| it.kind == Kind::Name);
+    let follows = |is: &dyn Fn(&Token<'_>) -> bool| second.is_some_and(|it| is(&tokens[it]));
+    match token.kind {
+        Kind::Program => is_named,
+        Kind::Name if token.is_word("TASK") => is_named && token.breaks > 0,
+        Kind::Name if token.is_word("ON") => follows(&|it| it.is_word("RESOURCE")),
+        Kind::Name if token.is_word("WITH") => follows(&|it| it.kind == Kind::Program),
+        _ => false,
+    }
 }
 
 /// Words of the head of a POU, before a name.

@@ -17,7 +17,7 @@ pub struct Token<'s> {
 }
 
 impl Token<'_> {
-    /// A comment or a pragma, which may stand anywhere.
+    /// A comment or a pragma, which may be anywhere.
     pub fn is_aside(&self) -> bool {
         matches!(self.kind, Kind::Comment | Kind::Pragma)
     }

@@ -220,3 +220,63 @@ fn sign(bytes: &[u8]) -> (Kind, usize) {
         None => (Kind::of_sign(bytes[0]).unwrap_or(Kind::Unknown), 1),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Kind, Scanner};
+
+    /// The kinds of a text's tokens with their texts.
+    fn tokens(text: &str) -> Vec<(Kind, &str)> {
+        let mut scanner = Scanner::new(text);
+        let mut all = Vec::new();
+        while let Some(kind) = scanner.next() {
+            all.push((kind, &text[scanner.span()]));
+        }
+        all
+    }
+
+    #[test]
+    fn a_token_is_the_longest_that_begins_there() {
+        let alone = |text| match tokens(text).as_slice() {
+            [(kind, whole)] if *whole == text => *kind,
+            other => panic!("{text}: {other:?}"),
+        };
+        for (kind, texts) in [
+            (Kind::Name, ["ifx", "_1", "é_2", "End_Iff"]),
+            (Kind::Prefix, ["INT#", "t#", "colour#", "DT#"]),
+            (Kind::Integer, ["0", "1_000", "12__", "9"]),
+            (Kind::Based, ["16#FF", "2#", "8#7_7", "16#gh"]),
+            (Kind::Real, ["1.5", "1e5", "1.5E-3", "1_0.0_0e+1_0"]),
+            (Kind::Time, ["T#5s", "ltime#-1.5h", "TIME#+1d_2h", "t#1.5.5"]),
+            (Kind::Date, ["D#2024-02-29", "tod#12:30:00.5", "DT#2024-1-1-0:0:0", "ldate#1"]),
+            (Kind::Text, ["''", "'a$'b'", "'$$'", "'é$é'"]),
+            (Kind::WideText, ["\"\"", "\"a$\"b\"", "\"'\"", "\"ü\""]),
+            (Kind::Address, ["%IX0.3", "%q*", "%MW1.2.3", "%I5"]),
+            (Kind::Part, ["%X3", "%b0", "%w12", "%L1"]),
+            (Kind::Comment, ["(* (* *) *)", "/* (* */", "// x", "(* open"]),
+            (Kind::Pragma, ["{x}", "{{ a } b }}", "{open", "{}"]),
+            (Kind::FunctionBlock, ["FUNCTION_BLOCK", "function_block", "Function_Block", "fUNCTION_bLOCK"]),
+        ] {
+            texts.into_iter().for_each(|it| assert_eq!(alone(it), kind, "{it}"));
+        }
+    }
+
+    #[test]
+    fn what_follows_a_token_begins_another_one() {
+        let kinds = |text| tokens(text).into_iter().map(|it| it.0).collect::<Vec<_>>();
+        assert_eq!(kinds("1..5"), [Kind::Integer, Kind::DotDot, Kind::Integer]);
+        assert_eq!(kinds("1.e5"), [Kind::Integer, Kind::Dot, Kind::Name]);
+        assert_eq!(kinds("a**=b"), [Kind::Name, Kind::Power, Kind::Equal, Kind::Name]);
+        assert_eq!(kinds("'a$\nb"), [Kind::OpenText, Kind::Unknown, Kind::Name]);
+        assert_eq!(kinds("%Z|?="), [Kind::Percent, Kind::Name, Kind::Unknown, Kind::Attempt]);
+        assert_eq!(kinds("D#2024-x"), [Kind::Date, Kind::Minus, Kind::Name]);
+    }
+
+    #[test]
+    fn each_keyword_is_found_in_any_case() {
+        for word in ["IF", "if", "END_CONFIGURATION", "__TRY", "mod", "Var_In_Out", "OR_ELSE", "TO", "By"] {
+            let [(kind, _)] = tokens(word)[..] else { panic!("{word}") };
+            assert_eq!(kind.keyword(), Some(word.to_ascii_uppercase().as_str()));
+        }
+    }
+}

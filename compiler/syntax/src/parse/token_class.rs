@@ -119,7 +119,7 @@ pub fn end_of(kind: Kind) -> Option<Kind> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Kind, is_end};
+    use super::is_end;
     use crate::lex::Scanner;
 
     #[test]
