@@ -10,7 +10,7 @@ use crate::{
 
 use super::{
     diagnostics,
-    parser::{In, Parsed, Problem, TokenReader},
+    parser::{In, TokenReader},
     token_class::{ends_statements, is_pou_end},
 };
 
@@ -195,23 +195,6 @@ pub fn arrow(input: &mut In<'_, '_, '_>) -> bool {
             .fix(sign, "^."),
     );
     true
-}
-
-/// `REF =`, `S =`: refused where the `=` follows the word at some distance.
-pub fn split_latch(input: &mut In<'_, '_, '_>) -> Parsed<()> {
-    let words = ["REF=", "S=", "R="];
-    let (word, at) = (input.here(), input.number());
-    let text = input.text(word).to_ascii_uppercase();
-    let meant = words.into_iter().find(|it| it.strip_suffix('=') == Some(text.as_str()));
-    let Some(meant) = meant.filter(|_| input.kind_ahead(1) == Kind::Equal) else { return Ok(()) };
-    let whole = word.to(input.state().place(at + 1));
-    input.report(
-        Diagnostic::new(Code::E0001, whole, format!("`{meant}` is written in one piece"))
-            .label(format!("expected `{meant}`"))
-            .help(format!("write `{meant}`"))
-            .fix(whole, meant),
-    );
-    Err(Problem::REPORTED)
 }
 
 /// Whether a name is directly after the sign that is next: `*p`, `&n`.

@@ -301,7 +301,7 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
 /// `a S= b`, `a R= b`, `a S= b R= c`, `a REF= b`
 fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
     if !is_latch(input, 0) {
-        foreign_syntax::split_latch(input)?;
+        foreign_statement::split_latch(input)?;
         return match target.kind {
             ExprKind::Call(..) => Ok(StatementKind::Expr(target)),
             _ => without_effect(input, target),
