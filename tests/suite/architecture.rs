@@ -17,7 +17,6 @@ const EDGES: &[(&str, &[&str])] = &[
         &[
             "staunch-ir",
             "staunch-runtime",
-            "logos",
             "quick-xml",
             "memchr",
             "rustc-hash",

@@ -17,6 +17,10 @@ fn problems_of(case: &Case) -> Vec<String> {
     let (sources, compilation) = case.compile();
     let fixed = |it: &Diagnostic| {
         let fix = it.fix.as_ref()?;
+        if it.help.is_none() {
+            // People would not see it.
+            return Some(format!("{}.st: {}: the fix has no help", case.name, it.message));
+        }
         let sources = applied(&sources, fix);
         let after = staunch_frontend::check(&sources, &case.settings().options);
         let what = problem(&compilation.diagnostics, &after, it, fix)?;

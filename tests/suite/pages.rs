@@ -3,8 +3,8 @@
 use crate::documents::wrapped;
 use staunch_frontend::{Code, Dialect, Options, Severity, Source, Sources};
 
-/// What no text shows that a test could read: of a file of 4 GiB, the page has the commands.
-const WITHOUT_A_TEXT: [Code; 1] = [Code::E0031];
+/// What no program alone shows: of a file of 4 GiB, the page has the commands, and of a stimulus, the table.
+const WITHOUT_A_TEXT: [Code; 2] = [Code::E0031, Code::W0522];
 
 #[test]
 fn pages_show_what_they_say() {
@@ -16,26 +16,31 @@ fn problems_of(code: Code) -> Vec<String> {
     let page = code.page();
     let is_wide = page.lines().any(|it| it.chars().count() > 120);
     let wide = is_wide.then(|| format!("{}: a line has more than 120 characters", code.name()));
-    let examples: Vec<_> = ["Before", "After"].into_iter().filter_map(|it| Example::of(page, it)).collect();
-    let wrong = match &examples[..] {
-        [_, _] if WITHOUT_A_TEXT.contains(&code) => None,
-        [before, after] => {
-            let expected = [vec![code], Vec::new()];
-            let mut found = [before.codes(), after.codes()];
-            if code.severity() == Severity::Error {
-                // Lints of what is refused do not count.
-                found[0].retain(|it| it.severity() == Severity::Error);
-            }
-            if code == Code::E0030 {
-                // It follows those that are too many.
-                found[0].retain(|it| *it == code);
-            }
-            (found != expected)
-                .then(|| format!("{}: {} before, {} after", code.name(), list(&found[0]), list(&found[1])))
+    let examples = ["Before", "After"].map(|it| Example::all(page, it));
+    let wrong = match &examples {
+        _ if WITHOUT_A_TEXT.contains(&code) => None,
+        [before, after] if before.len() == after.len() && !before.is_empty() => {
+            before.iter().zip(after).find_map(|(before, after)| problem_of(code, before, after))
         }
-        _ => Some(format!("{}: the page has {} of Before and After", code.name(), examples.len())),
+        [before, after] => Some(format!("{}: {} of Before, {} of After", code.name(), before.len(), after.len())),
     };
     wide.into_iter().chain(wrong).collect()
+}
+
+/// A pair of which one text does not show what it says.
+fn problem_of(code: Code, before: &Example, after: &Example) -> Option<String> {
+    let expected = [vec![code], Vec::new()];
+    let mut found = [before.codes(), after.codes()];
+    if code.severity() == Severity::Error {
+        // Lints of what is refused do not count.
+        found[0].retain(|it| it.severity() == Severity::Error);
+    }
+    if code == Code::E0030 {
+        // It follows those that are too many.
+        found[0].retain(|it| *it == code);
+    }
+    (found != expected)
+        .then(|| format!("{}: {} before, {} after\n{}", code.name(), list(&found[0]), list(&found[1]), before.text))
 }
 
 fn list(codes: &[Code]) -> String {
@@ -59,9 +64,17 @@ struct Example {
 }
 
 impl Example {
-    fn of(page: &str, title: &str) -> Option<Self> {
-        let mut lines = page.lines().skip_while(|it| !(it.starts_with(title) && it.ends_with(':')));
-        let heading = lines.next()?.trim_end_matches(':');
+    /// Those of a page whose headings begin with a word: a page may have a pair for each of its sections.
+    fn all(page: &str, title: &str) -> Vec<Self> {
+        let is_heading = |line: &str| line.starts_with(title) && line.ends_with(':');
+        let starts = page.lines().enumerate().filter(|(_, line)| is_heading(line)).map(|(at, _)| at);
+        starts.map(|it| Self::at(page, it)).collect()
+    }
+
+    /// The one with the heading in a line.
+    fn at(page: &str, line: usize) -> Self {
+        let mut lines = page.lines().skip(line);
+        let heading = lines.next().unwrap_or_default().trim_end_matches(':');
         let lines = lines.take_while(|it| it.is_empty() || it.starts_with("    "));
         let text: String = lines.map(|it| repeated(it.strip_prefix("    ").unwrap_or(it))).collect();
         let dialect = |word: &str| {
@@ -71,7 +84,7 @@ impl Example {
         let moved_from = dialect("from");
         let dialect = dialect("in").or_else(|| dialect("to")).unwrap_or_default();
         let implicit_narrowing = heading.ends_with(" with implicit-narrowing");
-        Some(Self { text, options: Options { dialect, moved_from, implicit_narrowing, ..Options::default() } })
+        Self { text, options: Options { dialect, moved_from, implicit_narrowing, ..Options::default() } }
     }
 
     /// The text's files: each begins with its path in a comment, unless there is one alone.

@@ -26,7 +26,7 @@ struct Subject {
     library: PathBuf,
     state: usize,
     inputs: Vec<Input>,
-    /// The instructions of a scan of each instance; `None` where there is no bound.
+    /// The instructions of a scan of each instance; `None` where it has no bound.
     bounds: Vec<Option<u64>>,
 }
 

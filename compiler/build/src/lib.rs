@@ -124,7 +124,7 @@ impl Build {
         self
     }
 
-    /// CODESYS: a number with a fraction is an LREAL also beside a REAL, as `codesys-real-literals = "lreal"` says.
+    /// CODESYS: a number with a fraction is an LREAL also next to a REAL, as `codesys-real-literals = "lreal"` says.
     #[must_use]
     pub fn codesys_lreal_literals(mut self, are_lreal: bool) -> Self {
         self.codesys_lreal_literals = Some(are_lreal);

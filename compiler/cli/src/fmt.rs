@@ -19,7 +19,7 @@ pub fn fmt(common: &Common, args: &Fmt) -> Result<u8, String> {
         match laid_out(&path, &project.layout)? {
             (name, _, Err(refusal)) => {
                 let is_named = named.contains(&path);
-                // A folder may hold other systems' files beside the text.
+                // A folder may hold other systems' files next to the text.
                 if is_named || refusal != Refusal::Foreign {
                     problems += 1;
                     output::tell(format_args!("error: {name}: {}", refusal.text()));

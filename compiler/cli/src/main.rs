@@ -40,6 +40,7 @@ mod manual;
 mod new;
 
 mod output;
+mod overwritten;
 mod scratch;
 mod systemd;
 

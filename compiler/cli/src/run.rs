@@ -3,7 +3,7 @@
 use crate::args::{self, Backend, MessageFormat, Opt, Run};
 use crate::rustc::{self, Kind};
 use crate::session::Session;
-use crate::{REJECTED, apart, debug};
+use crate::{REJECTED, apart, debug, overwritten};
 use staunch_host::{AtEnd, Io, Machine, Map, Moment, Options, Overrun, Pacing};
 use staunch_ir::Program;
 use staunch_machine::{Interpreted, Native};
@@ -14,6 +14,11 @@ use std::process::Command;
 pub fn run(session: &Session, args: &Run) -> Result<u8, String> {
     let Some(program) = session.program_to_run(args.program.as_deref())? else { return Ok(REJECTED) };
     apart::run(session, args)?;
+    if let Some(stimulus) = &args.stimulus
+        && !overwritten::lint(session, &program, stimulus)?
+    {
+        return Ok(REJECTED);
+    }
     if !args.debug.breakpoints.is_empty() {
         return match args.backend {
             None | Some(Backend::Interpret) => debug::run(session, args, options(session, args)?),

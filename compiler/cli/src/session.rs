@@ -95,7 +95,7 @@ impl Session {
     }
 
     /// The same program with stops before its statements, and what is asked there. The sources are those of the diagnostics,
-    /// which are about what is asked; the program is there only without them.
+    /// which are about what is asked; without them it has the program.
     pub fn with_stops(&self, asked: &[Asked<'_>]) -> Result<(Option<Program>, Vec<String>), String> {
         let own = self.sources.files().iter().filter(|it| !it.is_of_library()).count();
         let mut sources = self.sources.clone();
@@ -297,6 +297,26 @@ impl Session {
         let mut session = Self::new(common, project, first, sources, compile_time);
         session.accept(compilation, &levels(&self.common, &self.project)?, known)?;
         Ok(session)
+    }
+
+    /// Prints what was found after the sources were compiled; whether none of it is an error.
+    pub fn report(&self, found: Vec<Diagnostic>) -> Result<bool, String> {
+        let levels = levels(&self.common, &self.project)?;
+        let found = staunch_frontend::allowed(&self.sources, found);
+        let found: Vec<_> = found.into_iter().filter_map(|it| levels.apply(it)).collect();
+        let errors = found.iter().filter(|it| it.severity == Severity::Error).count();
+        if !found.is_empty() {
+            self.print(&found, errors)?;
+        }
+        Ok(errors == 0)
+    }
+
+    /// The statement at a place, as far as it is on its first line.
+    pub fn statement_at(&self, at: Location) -> Span {
+        let source = self.sources.get(at.file);
+        let first = self.sources.file(at.file).statement_at(at);
+        let offset = |it: u32| source.in_text(it).unwrap_or(it);
+        Span { file: at.file, start: offset(first.start), end: offset(first.end) }
     }
 
     /// Prints what is not `known`, and counts the errors.

@@ -75,10 +75,14 @@ fn is_sound<'s>(chart: &Chart<'s>, pou: &Pou<'s>, log: &mut Log<'_>) -> bool {
     let is_one = |it: &&Statement<'_>| !matches!(it.kind, StatementKind::Empty | StatementKind::Error);
     if let Some(statement) = pou.body.iter().find(is_one) {
         log.report(
-            Diagnostic::new(Code::E0515, statement.span, "statements beside a sequential function chart")
-                .label("no step runs this")
-                .other(chart.span, "the chart is the body")
-                .help("move it into an ACTION"),
+            Diagnostic::new(
+                Code::E0515,
+                statement.span,
+                "statements outside of the sequential function chart of this POU",
+            )
+            .label("no step runs this")
+            .other(chart.span, "the chart is the body")
+            .help("move it into an ACTION"),
         );
     }
     let named = |name: &Name<'_>| chart.steps.iter().any(|it| Key(it.name.text) == Key(name.text));
@@ -133,7 +137,7 @@ fn leave_out_numbers(chart: &mut Chart<'_>, pou: &Pou<'_>, log: &mut Log<'_>) {
                 Diagnostic::new(
                     Code::E0515,
                     it.action.span,
-                    format!("`{}` is no action: it is {}", it.action.text, ty.text),
+                    format!("`{}` is not an action: it is {}", it.action.text, ty.text),
                 )
                 .label("expected an ACTION or a BOOL variable")
                 .other(ty.span, "declared here")
@@ -268,7 +272,7 @@ fn tested(transitions: &[Transition<'_>]) -> Vec<usize> {
     order
 }
 
-/// The statements that leave the steps of the transitions that fire, and enter those behind them. Some have left theirs.
+/// The statements that leave the steps of the transitions that fire, and enter those after them. Some have left theirs.
 fn fire<'s>(chart: &Chart<'s>, has_left: impl Fn(&Transition<'_>) -> bool, body: &mut Vec<Statement<'s>>) {
     for (at, transition) in chart.transitions.iter().enumerate().filter(|it| !has_left(it.1)) {
         body.push(tree::when(tree::fires(at, transition.span), moved(&transition.from, "__leave")));

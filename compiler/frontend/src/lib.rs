@@ -90,7 +90,7 @@ impl Compilation {
         let renamed = self.diagnostics.iter().filter(|it| it.code == Code::W0609);
         self.renamed = renamed.filter_map(|it| it.fix.clone()).collect();
         self.diagnostics.retain(|it| !allowances.cover(it));
-        // A text of pieces is not in the order of its file, and may say twice what is there once: a contact on two wires.
+        // A text of pieces is not in the order of its file, and may repeat a part of it: a contact on two wires.
         let place = |it: &Diagnostic| sources.get(it.span.file).in_file(it.span);
         let mut seen = FxHashSet::default();
         self.diagnostics.retain(|it| {
@@ -368,6 +368,17 @@ fn at_the_end_of_a_body(it: &mut Diagnostic, source: &Source) {
     }
 }
 
+/// Of lints that were found outside of the front end, those that no `{allow …}` in the sources covers.
+pub fn allowed(sources: &Sources, mut found: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    if !found.is_empty() {
+        let numbers = (0..).take(sources.files().len());
+        let files: Vec<_> = numbers.map(|it| parse_file(sources, it)).collect();
+        let allowances = allow::Allowances::read(&files, &mut Vec::new());
+        found.retain(|it| !allowances.cover(it));
+    }
+    found
+}
+
 /// What reading a file of another system's has found.
 fn problem(file: u16, problem: &Problem) -> Diagnostic {
     let span = Span { file, start: problem.at, end: problem.at + 1 };
@@ -378,6 +389,7 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::Odd => (Code::E0033, "correct it in the original system, and export the file again"),
         Trouble::NotSupported => (Code::E0902, "write what it does in Structured Text"),
         Trouble::Open => (Code::E0003, "close it where it ends"),
+        Trouble::SecondEnd => (Code::E0015, "delete it: the file itself ends the unit"),
         Trouble::OtherOrder => (
             Code::W0528,
             "OpenPLC Editor before it was in Python 3, and Beremiz before April 2023, go from top to bottom: check which order is \

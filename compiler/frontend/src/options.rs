@@ -17,7 +17,7 @@ pub struct Options {
     pub s7_ld_edge: bool,
     /// OpenPLC `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
     pub f_trig_before_2024_12: bool,
-    /// In `codesys`, a number with a fraction and without a type is an LREAL also beside a REAL.
+    /// In `codesys`, a number with a fraction and without a type is an LREAL also next to a REAL.
     pub codesys_lreal_literals: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
     pub implicit_narrowing: bool,
@@ -94,7 +94,7 @@ impl Options {
 pub enum Question {
     /// About a block.
     Block(BlockOption),
-    /// CODESYS: the type of a number with a fraction beside a REAL.
+    /// CODESYS: the type of a number with a fraction next to a REAL.
     RealLiterals,
 }
 

@@ -182,7 +182,7 @@ fn retained<'s>(wanted: &[(&'static str, &[&'static str])], kind: VarKind, at: S
     VarBlock { kind, retain: Some(at), ..variables(wanted, at) }
 }
 
-/// The FUNCTION that starts the global instances, and its variables. `tells`: whether something reads `bInitRetains`;
+/// The FUNCTION that starts the global instances, and its variables. `tells`: whether a body reads `bInitRetains`;
 /// `keeps`: whether some global variables are RETAIN.
 fn of_globals(at: Span, tells: bool, keeps: bool, addresses: Addresses<'_>) -> Vec<Item<'_>> {
     let ([_, flag], [_, kept]) = (STARTED, KEPT);

@@ -27,7 +27,7 @@ fn every_unit_compiles() {
             Declares::Value => format!("VAR_GLOBAL it : ARRAY[0..1] OF LREAL := [{name}]; END_VAR"),
         };
         let reported = compiled(&call, dialect).diagnostics;
-        // A FUNCTION lacks its arguments, and a list is no value.
+        // A FUNCTION lacks its arguments, and a list is not a value.
         let is_missing = |it: &str| it.contains("is not declared") || it.contains("there is no ");
         let wrong = reported.iter().filter(|it| it.severity == Severity::Error);
         // What is TcUnit's is named after it.

@@ -45,6 +45,7 @@ pub mod interpret;
 pub mod layout;
 pub mod loops;
 pub mod narrow;
+pub mod overwritten;
 pub mod pieces;
 pub mod promote;
 pub mod reached;

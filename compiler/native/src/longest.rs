@@ -16,7 +16,7 @@ pub struct Longest {
     pub unknown: BTreeSet<Unknown>,
 }
 
-/// Why there is no number.
+/// Why it has no number.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Unknown {
     /// Nothing says how often a loop is repeated.

@@ -7,13 +7,13 @@ mod conditional;
 mod declared;
 mod kind;
 mod literal;
+mod scan;
 
 pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
 pub use literal::{DECIMAL, Fault, date, duration, integer, real, string};
-
-use logos::Logos;
+pub use scan::Scanner;
 
 use crate::{
     ast::Name,
@@ -54,9 +54,10 @@ pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Know
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
     let mut reading = Reading { file, text, tokens, named: Vec::new(), unknown: false };
-    for (kind, range) in Kind::lexer(text).spanned() {
-        let place = (offset(range.start), offset(range.end));
-        reading.token(kind.unwrap_or(Kind::Unknown), place);
+    let mut scanner = Scanner::new(text);
+    while let Some(kind) = scanner.next() {
+        let range = scanner.span();
+        reading.token(kind, (offset(range.start), offset(range.end)));
         if reading.tokens.diagnostics.len() >= MAX_REPORTS {
             reading.tokens.cut = true;
             break;

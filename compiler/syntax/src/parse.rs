@@ -23,6 +23,7 @@ mod recovery;
 mod unsupported;
 
 mod expression;
+mod foreign_expression;
 mod literal;
 
 mod foreign_types;

@@ -331,6 +331,18 @@ impl Source {
         start..start + self.text[start..end].trim_end_matches(['\r', '\n']).len()
     }
 
+    /// The statement at a place, as far as it is on its first line.
+    pub fn statement_at(&self, at: Location) -> Span {
+        let range = self.line_range(at.line);
+        let line = self.text.get(range.clone()).unwrap_or_default();
+        let before = usize::from(at.column.saturating_sub(1));
+        let start = line.char_indices().nth(before).map_or(line.len(), |it| it.0);
+        let rest = &line[start..];
+        let length = rest.find(';').map_or(rest.trim_end().len(), |it| it + 1);
+        let offset = |at: usize| u32::try_from(range.start + at).unwrap_or(u32::MAX);
+        Span { file: at.file, start: offset(start), end: offset(start + length) }
+    }
+
     /// The bytes of a 1-based line of the text, its line end included.
     pub fn line_bounds(&self, line: u32) -> (u32, u32) {
         let at = usize::try_from(line).unwrap_or(usize::MAX).saturating_sub(1);

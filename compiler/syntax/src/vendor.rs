@@ -52,14 +52,14 @@ pub fn read_named(path: &str, text: &str) -> Option<Assembly> {
     openplc::read(path, text).or_else(|| read(text)).or_else(named)
 }
 
-/// The parts of a TwinCAT 3 file that are Structured Text, where each stands as it is.
+/// The parts of a TwinCAT 3 file that are Structured Text, each as it is.
 pub fn texts_of_twincat(file: &str) -> Option<Vec<core::ops::Range<usize>>> {
     let mut reader = Reader::new(file)?;
     let root = reader.root().ok()??;
     (root.name == "TcPlcObject").then(|| twincat::texts(reader))?
 }
 
-/// Whether a file holds Structured Text in the form of a system's editor, and is no text of the language.
+/// Whether a file holds Structured Text in the form of a system's editor, and is not Structured Text itself.
 pub fn is_of_other_editor(path: &str, text: &str) -> bool {
     !scl::is_source(text) && !path.to_ascii_lowercase().ends_with(".scl") && read_named(path, text).is_some()
 }

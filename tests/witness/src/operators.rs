@@ -58,7 +58,7 @@ impl<'a> Machine<'a> {
         asked: Option<&Type<'a>>,
     ) -> Outcome<(Value<'a>, Value<'a>)> {
         match (untyped(left), untyped(right)) {
-            // NOT of a number without a type has that of the bits beside it.
+            // NOT of a number without a type has that of the bits on the other side.
             (None, None) if is_not_of_number(left) && asked.is_none() => {
                 let b = self.value(frame, right, asked)?;
                 let a = self.value(frame, left, Some(&b.ty.clone()))?;

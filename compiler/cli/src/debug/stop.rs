@@ -1,7 +1,7 @@
 //! A stop as text, for people or as an object.
 
 use super::variables::{Shown, Variables};
-use staunch_frontend::{Sources, Span, Style, excerpt};
+use staunch_frontend::{Sources, Style, excerpt};
 use staunch_host::{format_time, json_text};
 use staunch_ir::Location;
 use staunch_runtime::{Fault, Time};
@@ -24,7 +24,7 @@ pub(super) struct Report<'a> {
 impl Report<'_> {
     pub fn text(&self, style: Style) -> String {
         let title = format!("in scan {}, at {}", self.scan, format_time(self.time));
-        let mut out = excerpt(&title, self.span(), self.sources, style);
+        let mut out = excerpt(&title, self.sources.file(self.at.file).statement_at(self.at), self.sources, style);
         // Writing to a String cannot fail.
         let _ = writeln!(out, "{}", self.path.join(" > "));
         if let Some(fault) = self.faulted {
@@ -57,19 +57,6 @@ impl Report<'_> {
             objects(&self.variables.locals),
             objects(&self.variables.members),
         )
-    }
-
-    /// The statement, as far as it is on its first line.
-    fn span(&self) -> Span {
-        let source = self.sources.file(self.at.file);
-        let range = source.line_range(self.at.line);
-        let line = source.text.get(range.clone()).unwrap_or_default();
-        let before = usize::from(self.at.column.saturating_sub(1));
-        let start = line.char_indices().nth(before).map_or(line.len(), |it| it.0);
-        let rest = &line[start..];
-        let length = rest.find(';').map_or(rest.trim_end().len(), |it| it + 1);
-        let offset = |at: usize| u32::try_from(range.start + at).unwrap_or(u32::MAX);
-        Span { file: self.at.file, start: offset(start), end: offset(start + length) }
     }
 }
 

@@ -356,7 +356,7 @@ fn what_makes_a_count_of_logix_another_is_blamed() {
             ("siemens", "logix"),
             "Trap 5 (`c`)",
         ),
-        // The load wins: what `d` does itself is no matter.
+        // The load wins: what `d` does itself does not count.
         (
             "loaded_from_another",
             "up : CTU; d : CTD;",
@@ -403,7 +403,7 @@ fn what_makes_a_count_of_logix_another_is_blamed() {
     }
 }
 
-/// `no run` speaks of the event, and makes no input of a variable of that name.
+/// `no run` is about the event, and does not make a variable `run` an input.
 #[test]
 fn an_event_that_does_not_happen_is_no_variable() {
     let source = "PROGRAM p\nVAR_INPUT start : BOOL; END_VAR\nVAR run : BOOL; c : CTU; v : INT; END_VAR\n\

@@ -66,7 +66,7 @@ END_PROGRAM
     assert!(json.contains("\"verdict\":\"different\",\"without_run\":\"equal\"}]"), "{json}");
 }
 
-/// Of a number with a fraction beside a REAL, CODESYS and Beckhoff say on one page that it is an LREAL, and on another that it is what
+/// Of a number with a fraction next to a REAL, CODESYS and Beckhoff say on one page that it is an LREAL, and on another that it is what
 /// its place asks for.
 #[test]
 fn a_number_with_a_fraction_is_tried_as_both_types() {

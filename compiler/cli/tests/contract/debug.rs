@@ -273,7 +273,7 @@ fn the_run_ends_where_the_commands_do() {
     let ran = run(&folder, "--break 29 --commands steps.txt");
     assert_eq!(ran.err(0).matches("stopped").count(), 2);
     has(&run(&folder, "--break 29 --commands absent.txt").err(2), &["--commands absent.txt"]);
-    // Nobody is there to be asked.
+    // Nobody can answer.
     let mut command = folder.command("run plant.st -q -A warnings --break 29");
     let ran = Ran::of(command.stdin(Stdio::null()).output().unwrap());
     has(&ran.err(0), &["after 1 stop"]);

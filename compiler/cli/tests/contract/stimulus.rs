@@ -34,6 +34,51 @@ fn rows_are_written_before_their_scan_and_hold() {
     );
 }
 
+/// W0522: only what is certain is reported.
+#[test]
+fn a_column_that_the_program_overwrites_is_reported() {
+    const TEXT: &str = "VAR_GLOBAL lamp : BOOL; speed : INT; END_VAR
+PROGRAM Main
+VAR_INPUT start : BOOL; END_VAR
+VAR full, before, late, maybe : BOOL; c : CTU; list : ARRAY[1..2] OF INT; END_VAR
+c(CU := start, PV := 3);
+full := c.Q;
+before := late;
+late := full;
+IF start THEN maybe := TRUE; END_IF
+lamp := speed > 3;
+list[1] := 4;
+IF full THEN RETURN; END_IF
+speed := 0;
+END_PROGRAM
+";
+    let table = "scan,start,full,late,maybe,lamp,speed,list[1],|,before\n1,TRUE,FALSE,TRUE,TRUE,TRUE,5,1,|,TRUE\n";
+    let folder = Folder::with("overwritten", &[("main.st", TEXT), ("in.csv", table)]);
+    let run = "run main.st --stimulus in.csv --scans 1 --message-format short";
+    let err = folder.staunch(run).err(0);
+    assert_eq!(
+        err.lines().filter(|it| it.contains("W0522")).collect::<Vec<_>>(),
+        [
+            "main.st:6:1: warning[W0522]: the stimulus gives `full` values that the program never reads",
+            "main.st:10:1: warning[W0522]: the stimulus gives `lamp` values that the program never reads",
+        ]
+    );
+    folder.staunch(&format!("{run} -D W0522")).err(1);
+    folder.write("main.st", &TEXT.replace("full := c.Q", "{allow W0522}\nfull := c.Q"));
+    assert!(!folder.staunch(run).err(0).contains("`full`"));
+    // A trace is a stimulus, in which only inputs count.
+    folder.write("in.csv", "scan,time_ms,start,full\n1,0,TRUE,FALSE\n");
+    assert!(!folder.staunch(run).err(0).contains("W0522"));
+    // Another program may read it before.
+    let reader = "PROGRAM Other VAR seen : BOOL; END_VAR seen := lamp; END_PROGRAM
+CONFIGURATION Plant RESOURCE Cpu ON Plc TASK t(INTERVAL := T#10ms, PRIORITY := 1);
+PROGRAM other WITH t : Other; PROGRAM main WITH t : Main; END_RESOURCE END_CONFIGURATION
+";
+    folder.write("main.st", &format!("{TEXT}{reader}"));
+    folder.write("in.csv", "scan,lamp\n1,TRUE\n");
+    assert!(!folder.staunch(run).err(0).contains("W0522"));
+}
+
 #[test]
 fn times_and_scans_place_rows() {
     assert_eq!(

@@ -53,6 +53,20 @@ pub(super) fn project(name: &str) -> Folder {
     folder
 }
 
+/// In an object of JSON, `rendered` is what a person sees: it has the same places, and the same help.
+#[test]
+fn json_shows_places_of_vendors_files_as_people_see_them() {
+    let folder = project("json_vendor");
+    folder.write("POUs/MAIN.TcPOU", &MAIN.replace("go := pulse", "go := pluse"));
+    let err = folder.staunch("check Line.plcproj").err(1);
+    let out = folder.staunch("check Line.plcproj --message-format json").out(1);
+    let diagnostic: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
+    let rendered = diagnostic["rendered"].as_str().unwrap();
+    assert!(err.starts_with(rendered), "{err}\nand\n{rendered}");
+    has(rendered, "MAIN.TcPOU:13:");
+    has(rendered, "did you mean `pulse`?");
+}
+
 #[test]
 fn a_project_of_twincat_is_written_as_structured_text() {
     let folder = project("converted");
@@ -66,7 +80,7 @@ fn a_project_of_twincat_is_written_as_structured_text() {
     folder.write("words.st", "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE); w := c.CV; END_PROGRAM\n");
     folder.staunch("convert words.st -o named.st --dialect codesys").out(0);
     folder.staunch("check named.st").out(0);
-    // What is written is no source, and a program with a mistake is not written.
+    // The file that is written is not a source, and a program with a mistake is not written.
     has(&folder.staunch("convert line.st -o line.st").err(2), &["line.st"]);
     folder.write("wrong.st", "PROGRAM Main VAR n : INT; END_VAR n := m; END_PROGRAM");
     has(&folder.staunch("convert wrong.st -o other.st").err(1), &["`m` is not declared"]);

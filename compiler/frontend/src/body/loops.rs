@@ -258,7 +258,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// A FOR whose limit or step is computed at more bits than its counter has: the number nearest to the limit is the limit. Where
-    /// even the least value of the counter is beyond it, there is no turn.
+    /// even the least value of the counter is beyond it, no turn runs.
     fn loop_to(&mut self, mut head: For, limit: Option<Expr>, step: Option<&Expr>, span: Span) -> Option<()> {
         let whole = head.last.ty.elementary().and_then(|it| it.repr().range());
         let wide = limit.zip(whole).filter(|(limit, (least, most))| {

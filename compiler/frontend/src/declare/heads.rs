@@ -212,6 +212,19 @@ impl<'s> Declarations<'s> {
         }
     }
 
+    /// What a class writes for a routine of an INTERFACE.
+    fn how_to_declare(&self, head: usize) -> String {
+        let head = self.pous[head].ast;
+        let text = |it: &ast::TypeSpec<'s>| self.log.sources.text(it.span);
+        match (head.kind, &head.result) {
+            (PouKind::Method, Some(ty)) => {
+                format!("write `METHOD {} : {} … END_METHOD` in it", head.name.text, text(ty))
+            }
+            (PouKind::Method, None) => format!("write `METHOD {} … END_METHOD` in it", head.name.text),
+            _ => "declare it here".to_owned(),
+        }
+    }
+
     fn check_head(&mut self, class: usize, head: usize) {
         let (name, wanted) = (self.pous[class].ast.name, self.pous[head].ast.name);
         let title = self.title(head);
@@ -248,7 +261,7 @@ impl<'s> Declarations<'s> {
                 };
                 Diagnostic::new(Code::E0403, name.span, format!("`{}` must implement {what}", name.text))
                     .label("it must have every METHOD and PROPERTY of the INTERFACEs that it IMPLEMENTS")
-                    .help("declare it here, or make this ABSTRACT")
+                    .help(format!("{}, or make `{}` ABSTRACT", self.how_to_declare(head), name.text))
             }
         };
         self.report(error.other(wanted.span, "declared here"));

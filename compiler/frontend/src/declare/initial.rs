@@ -114,7 +114,8 @@ impl<'s> Declarations<'s> {
         if runs.len > total {
             self.report(
                 Diagnostic::new(Code::E0206, span, "there are more initial values than elements")
-                    .label(format!("{} values for {total} elements", runs.len)),
+                    .label(format!("{} values for {total} elements", runs.len))
+                    .help(format!("take {} away, or declare a longer array", runs.len - total)),
             );
             return None;
         }

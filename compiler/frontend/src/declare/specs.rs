@@ -158,7 +158,7 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Notes a PROGRAM without a TASK beside one that has one.
+    /// Notes a PROGRAM without a TASK where another has one.
     pub(super) fn note_tasks(&mut self, files: &[ast::File<'s>]) {
         for resource in configurations(files).flat_map(|it| &it.resources) {
             let without = resource.programs.iter().find(|it| it.task.is_none());
@@ -619,6 +619,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 Diagnostic::new(Code::E0406, span, "the bounds of an array are in the wrong order")
                     .label(format!("{low} is above {high}"))
+                    .help(format!("write `{high}..{low}`"))
                     .fix(span, format!("{high}..{low}")),
             );
             return None;

@@ -51,6 +51,17 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
+    /// An assignment that is a whole condition, where the dialect has that.
+    pub(crate) fn doubt_assignment(&mut self, [left, _]: &[ast::Expr<'s>; 2], sign: Span) {
+        let shown = self.decl.log.sources.text(left.span).to_owned();
+        self.report(
+            Diagnostic::new(Code::W0530, sign, "this condition is an assignment")
+                .label(format!("`{shown}` is assigned, and the condition is its new value"))
+                .help("write `=` to compare, or assign in a statement before this one")
+                .fix(sign, "="),
+        );
+    }
+
     /// Whether a METHOD or ACTION of the POU is named where something is assigned, which is refused.
     fn refuse_routine(&mut self, target: &ast::Expr<'s>) -> bool {
         let ast::ExprKind::Name(name) = target.kind else { return false };

@@ -109,13 +109,32 @@ impl<'s> Checker<'_, 's> {
         if !bits {
             let found = self.type_name(ty);
             let wanted = if dialect.has_bits_of_integers() { "an integer" } else { "a bit string" };
-            self.report(
+            let error =
                 Diagnostic::new(Code::E0204, span, format!("NOT needs a BOOL or {wanted}, but this is {found}"))
-                    .label(format!("this is {found}")),
-            );
+                    .label(format!("this is {found}"));
+            self.report(match self.comparison_from(span) {
+                Some(comparison) => error
+                    .note("NOT applies to the operand after it alone, before any comparison")
+                    .help(format!("write `NOT ({})`", self.decl.log.sources.text(comparison)))
+                    .fix(comparison, format!("({})", self.decl.log.sources.text(comparison))),
+                None => error,
+            });
             return None;
         }
         self.apply(Op::Not, ty, vec![value], ty, span)
+    }
+
+    /// `n = 5` from its first operand on, where a name or a number follows the sign.
+    fn comparison_from(&self, first: Span) -> Option<Span> {
+        let text = &self.decl.log.sources.get(first.file).text;
+        let rest = text.get(usize::try_from(first.end).ok()?..)?;
+        let after = rest.trim_start();
+        let sign = after.find(|it| !"<>=".contains(it)).filter(|it| *it > 0)?;
+        let operand = after[sign..].trim_start();
+        let is_part = |it: char| it.is_ascii_alphanumeric() || "_.#".contains(it);
+        let len = operand.find(|it| !is_part(it)).filter(|it| *it > 0)?;
+        let end = rest.len() - operand.len() + len;
+        Some(Span { end: first.end + u32::try_from(end).ok()?, ..first })
     }
 
     /// The type that bits of these sides count as, where both are integers of a dialect that has none but their bits: that of

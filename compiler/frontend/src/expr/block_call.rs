@@ -142,9 +142,11 @@ impl<'s> Checker<'_, 's> {
             let at = info.inputs().count();
             parameters.insert(at, Parameter { name: kept.pin, section: Section::InOut });
         }
+        let dialect = self.decl.dialect(span);
         let moved = self.arguments_by_own_names(id, arguments);
         let arguments = moved.as_deref().unwrap_or(arguments);
-        let given = self.bind(info.name, &parameters, arguments, |name| super::unresolved::unknown_pin(id, name))?;
+        let given =
+            self.bind(info.name, &parameters, arguments, |name| super::unresolved::unknown_pin(dialect, id, name))?;
         if self.decl.dialect(span).wants_all_positions() {
             self.require_all(info.name, &parameters, &given, arguments, |_, _| false, span)?;
         }

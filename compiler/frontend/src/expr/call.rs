@@ -5,8 +5,8 @@ use super::checker::Checker;
 use super::enable::Enable;
 use super::generic_call::Called;
 use super::operand::Operand;
-use crate::diagnostic::wording::list;
-use crate::dialect::missing;
+use crate::diagnostic::wording::{list, list_of_all};
+use crate::dialect::{Dialect, missing};
 use crate::names::functions;
 use crate::spelling::nearest;
 use crate::testing::suite::LIBRARY;
@@ -247,7 +247,9 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn is_missing_operator(&self, callee: &ast::Expr<'s>) -> bool {
-        matches!(&callee.kind, Ast::Name(name) if missing::is_operator(self.decl.dialect(name.span), name.text))
+        let Ast::Name(name) = &callee.kind else { return false };
+        let calls_a_routine = self.decl.dialect(name.span) == Dialect::Logix && name.text.eq_ignore_ascii_case("JSR");
+        calls_a_routine || missing::is_operator(self.decl.dialect(name.span), name.text)
     }
 
     /// The FUNCTION that a call means. SIMATIC's SCALE_X has the type of its MIN and MAX, and that is its place's where these
@@ -318,7 +320,7 @@ impl<'s> Checker<'_, 's> {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
             None if names.is_empty() => error,
             None if names.len() == 1 => error.help(format!("its parameter is {}", list(&names))),
-            None => error.help(format!("its parameters are {}", list(&names))),
+            None => error.help(format!("its parameters are {}", list_of_all(&names))),
         }
     }
 }

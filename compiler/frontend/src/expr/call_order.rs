@@ -44,7 +44,7 @@ impl<'s> Checker<'_, 's> {
         }
     }
 
-    /// Calls of an operand, which its statements from `mark` on have, and what it reads, beside the calls of the operands before it.
+    /// Calls of an operand, which its statements from `mark` on have, and what it reads, with the calls of the operands before it.
     pub(crate) fn note_siblings(&mut self, mark: usize, value: Option<&Expr>) {
         let Some(from) = self.statement_from.filter(|it| *it < mark) else { return };
         let (first, second) = (Calls::of(&self.block[from..mark]), Calls::of(&self.block[mark..]));

@@ -1,13 +1,9 @@
 //! What a call calls.
 
 use super::checker::Checker;
-use super::unresolved::{block_of_another_dialect, no_such_block};
-use super::{logix_operands, test_words};
-use crate::dialect::{Dialect, missing};
+use super::unresolved::no_such_block;
 use crate::inherit::is_super;
-use crate::names::{Entry, Found, Meaning, Sense, functions, is_instruction};
-use crate::prelude;
-use crate::spelling::nearest;
+use crate::names::{Entry, Found, Meaning, Sense, is_instruction};
 use crate::{Code, Diagnostic, ast, dialect};
 use ast::{ArgumentKind, ExprKind as Ast};
 use staunch_ir::Type;
@@ -26,20 +22,6 @@ pub(crate) enum Callee<'s> {
     Instance,
     /// A METHOD or ACTION of an instance, by its slot.
     Routine(usize),
-}
-
-/// Conversions of times that some compilers have beyond the standard's.
-const UNITS_OF_TIME: [(&str, &str); 4] = [
-    ("TIME_TO_S", "write `TIME_TO_LINT(x) / 1000`"),
-    ("TIME_TO_MS", "write `TIME_TO_LINT(x)`"),
-    ("TIME_TO_US", "write `LTIME_TO_LINT(TIME_TO_LTIME(x)) / 1000`"),
-    ("TIME_TO_NS", "write `LTIME_TO_LINT(TIME_TO_LTIME(x))`"),
-];
-
-/// What S7 has in place of a counter of S5.
-fn s5_counter(name: &str) -> Option<&'static str> {
-    let counters = [("S_CU", "CTU"), ("S_CD", "CTD"), ("S_CUD", "CTUD")];
-    counters.into_iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
 }
 
 impl<'s> Checker<'_, 's> {
@@ -246,122 +228,4 @@ impl<'s> Checker<'_, 's> {
         self.report(error);
         None
     }
-
-    /// The counters of S5, which S7-300 and S7-400 have besides: functions that work on a counter by its number.
-    fn report_s5_counter(&mut self, name: ast::Name<'s>, counter: &str) {
-        let pins = match counter {
-            "CTU" => "CU := …, R := …, PV := …",
-            "CTD" => "CD := …, LD := …, PV := …",
-            _ => "CU := …, CD := …, R := …, LD := …, PV := …",
-        };
-        let text = name.text.to_ascii_uppercase();
-        self.report(
-            Diagnostic::new(Code::E0904, name.span, format!("`{text}` is a counter of S5, which is not supported"))
-                .label("it counts from 0 to 999 in BCD, in a numbered counter")
-                .help(format!(
-                    "declare `c : {counter};`, and call `c({pins})`: it counts in INT, also past 999 and below 0"
-                )),
-        );
-    }
-
-    pub(crate) fn report_unknown_function(&mut self, name: ast::Name<'s>) {
-        if self.decl.bare_block(name).is_some() {
-            self.report_type_called(name, ast::PouKind::FunctionBlock);
-            return;
-        }
-        if Family::ALL.into_iter().any(|it| is_instruction(it, name.text)) {
-            let is_moved = self.decl.log.options.moved_from.is_some();
-            if let Some(error) = block_of_another_dialect(self.decl.dialect(name.span), is_moved, name) {
-                self.report(error);
-                return;
-            }
-            self.report(
-                Diagnostic::new(Code::E0309, name.span, format!("`{}` is an instruction of LOGIX", name.text))
-                    .help(format!("write `LOGIX.{}(…)`, or compile with `--dialect logix`", name.text)),
-            );
-            return;
-        }
-        if let Some(dialect) = functions::owner(name.text) {
-            let system = dialect.name().to_ascii_uppercase();
-            let error = Diagnostic::new(Code::E0307, name.span, format!("`{}` is a function of {system}", name.text))
-                .label("this file's dialect does not have this function");
-            let error = match name.text.eq_ignore_ascii_case("ROUND") {
-                true => error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one"),
-                false => error.help(dialect.how_to_choose()),
-            };
-            self.report(error);
-            return;
-        }
-        if let Some(dialect) = prelude::owner(name.text) {
-            let system = dialect.name().to_ascii_uppercase();
-            self.report(
-                Diagnostic::new(Code::E0307, name.span, format!("`{}` is in {system}'s library", name.text))
-                    .label("this file's dialect does not have this function")
-                    .help(dialect.how_to_choose()),
-            );
-            return;
-        }
-        if let Some(counter) = s5_counter(name.text).filter(|_| self.decl.dialect(name.span) == Dialect::Siemens) {
-            self.report_s5_counter(name, counter);
-            return;
-        }
-        if let Some((why, instead)) = missing::function_of_s7(self.decl.dialect(name.span), name.text) {
-            let message = format!("the function `{}` of S7 is not supported", name.text);
-            self.report(Diagnostic::new(Code::E0904, name.span, message).label(why).help(instead));
-            return;
-        }
-        if not_yet(name.text, self.decl.dialect(name.span)) {
-            self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
-            return;
-        }
-        if self.is_of_unknown_base() {
-            return;
-        }
-        let own = self.decl.pous.iter().filter(|it| it.ast.kind == ast::PouKind::Function).map(|it| it.ast.name.text);
-        let instances =
-            self.scope.variables.iter().filter(|it| matches!(it.place.ty, Type::Block(_) | Type::Struct(_)));
-        // Nobody means `NOT()`.
-        let standard = functions::names().filter(|it| *it != "NOT").map(|it| -> &str { it });
-        let candidates = own.chain(instances.map(|it| it.name.text)).chain(standard);
-        let near = nearest(name.text, candidates).map(str::to_owned);
-        let mut error =
-            Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
-                .label("unknown name");
-        let is_logix = self.decl.dialect(name.span).family() == Family::Logix;
-        if let Some(meant) = logix_operands::of_ladder(name.text).filter(|_| is_logix) {
-            error = error.note("it is an instruction of ladder").help(meant);
-        } else if staunch_ir::Elementary::named(name.text).is_some() {
-            error = error.help(format!("a value is converted with `TO_{}(…)`", name.text.to_ascii_uppercase()));
-        } else if let Some((_, meant)) = UNITS_OF_TIME.iter().find(|it| name.text.eq_ignore_ascii_case(it.0)) {
-            error = error.note("TIME_TO_LINT counts milliseconds, LTIME_TO_LINT nanoseconds").help(*meant);
-        } else if let Some(function) = typed_function(name.text) {
-            error = error
-                .help(format!("write `{function}(…)`, which takes the type of what it is given"))
-                .fix(name.span, function);
-        } else if name.text.eq_ignore_ascii_case("POW") {
-            error = error.help("write `EXPT(base, exponent)`, or `base ** exponent`");
-        } else if let Some(hint) = self.decl.hint_of_namespace(name) {
-            error = error.help(hint);
-        } else if let Some(hint) = test_words::hint(name.text).filter(|_| self.is_test()) {
-            error = error.help(hint);
-        } else if let Some(near) = near {
-            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-        }
-        self.report(error);
-    }
-}
-
-/// The function of all types that `ADD_INT` names with one.
-fn typed_function(name: &str) -> Option<String> {
-    functions::typed(name).map(|(signature, ..)| signature.name.to_owned())
-}
-
-/// Functions of the standard's tables, and of CODESYS, that are known to be missing.
-fn not_yet(name: &str, dialect: Dialect) -> bool {
-    if missing::is_operator(dialect, name) {
-        return true;
-    }
-    let name = name.to_ascii_uppercase();
-    let (from, to) = name.split_once("_TO_").unwrap_or_default();
-    from == "BCD" || to == "BCD" || name == "NAME_OF"
 }

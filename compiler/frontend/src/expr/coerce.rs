@@ -213,6 +213,14 @@ impl<'s> Checker<'_, 's> {
                         let meant = format!("{}_TO_{}({text})", it.name(), into.word());
                         error.help(format!("write `{meant}`")).fix(span, meant)
                     }
+                    (Type::String(_), Type::BOOL, None, Some(text)) => {
+                        match text.trim_matches('\'').to_ascii_uppercase() {
+                            word if ["TRUE", "FALSE"].contains(&word.as_str()) => {
+                                error.help(format!("write `{word}`")).fix(span, word)
+                            }
+                            _ => error,
+                        }
+                    }
                     _ => error,
                 });
                 None
@@ -431,7 +439,15 @@ impl<'s> Checker<'_, 's> {
             ExprKind::Text(_) if to.wide => {
                 error.label(format!("a WSTRING is written {}", self.decl.dialect(span).wide_text("WSTRING", "…")))
             }
-            ExprKind::Text(_) => error.label("a STRING is written in single quotes: `'…'`"),
+            ExprKind::Text(_) => {
+                let error = error.label("a STRING is written in single quotes: `'…'`");
+                match text.strip_prefix('"').and_then(|it| it.strip_suffix('"')) {
+                    Some(inner) if !inner.contains(['\'', '$']) => {
+                        error.help(format!("write `'{inner}'`")).fix(span, format!("'{inner}'"))
+                    }
+                    Some(_) | None => error,
+                }
+            }
             _ => error.label(format!("this is {found}")).help(format!("write `{from}_TO_{}({text})`", to.word())),
         });
     }

@@ -71,6 +71,9 @@ impl<'s> Checker<'_, 's> {
             self.report(error);
             return None;
         }
+        if let Ast::Assign(sides, sign) = &expr.bare().kind {
+            self.doubt_assignment(sides, *sign);
+        }
         self.coerce(value, Type::BOOL, expr.span)
     }
 

@@ -195,6 +195,7 @@ pub(super) fn of_ladder(name: &str) -> Option<&'static str> {
         (&["OTE"], "assign the condition: `tag := condition;`"),
         (&["MOV"], "write `destination := source;`"),
         (&["CPT"], "write `destination := expression;`"),
+        (&["JSR"], "declare the routine as a FUNCTION_BLOCK or an ACTION, and call it by its name: `Routine();`"),
     ];
     let is_it = |names: &[&str]| names.iter().any(|it| it.eq_ignore_ascii_case(name));
     MEANT.iter().find(|(names, _)| is_it(names)).map(|(_, meant)| *meant)

@@ -74,4 +74,21 @@ impl<'s> Checker<'_, 's> {
             _ => None,
         }
     }
+
+    /// `s.Length`, as other languages have it: the function that gives it.
+    pub(super) fn function_for_length(&self, base: &ast::Expr<'s>, name: ast::Name<'s>, ty: Type) -> Option<String> {
+        let text = self.decl.log.sources.text(base.span);
+        let is_length = ["Length", "Len", "Size", "Count"].iter().any(|it| name.text.eq_ignore_ascii_case(it));
+        match ty {
+            _ if !is_length => None,
+            Type::String(_) => Some(format!("LEN({text})")),
+            Type::Array(_) => Some(format!("UPPER_BOUND({text}, 1)")),
+            Type::Elementary(_)
+            | Type::Reference(_)
+            | Type::Subrange(..)
+            | Type::Struct(_)
+            | Type::Enum(_)
+            | Type::Block(_) => None,
+        }
+    }
 }

@@ -5,7 +5,7 @@ use super::generic_call::Called;
 use super::place::{Access, Found};
 use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
-use crate::spelling::Key;
+use crate::spelling::{Key, nearest};
 use crate::types::declarations::{Routines, Slot};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ExprKind as Ast, PouKind};
@@ -89,8 +89,17 @@ impl<'s> Checker<'_, 's> {
             let home = self.decl.pous[self.decl.home(slot)].ast;
             let error = match (home.extends, name) {
                 (Some(base), Some(name)) => {
-                    Diagnostic::new(Code::E0107, name.span, format!("`{}` has no METHOD `{}`", base.text, name.text))
-                        .label("unknown member")
+                    let error = Diagnostic::new(
+                        Code::E0107,
+                        name.span,
+                        format!("`{}` has no METHOD `{}`", base.text, name.text),
+                    )
+                    .label("unknown member");
+                    let inherited = self.decl.routines_of_base(slot);
+                    match nearest(name.text, inherited.iter().map(|it| it.name.text)) {
+                        Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+                        None => error,
+                    }
                 }
                 (Some(base), None) => {
                     Diagnostic::new(Code::E0305, span, format!("`{}` has no body to call", base.text))

@@ -82,7 +82,7 @@ impl<'s> Checker<'_, 's> {
         self.bits_of_side(found, left, op)
     }
 
-    /// NOT of a number without a type takes that of the bit string beside it. MATIEC compares a bit string with a call of SEL, MUX
+    /// NOT of a number without a type takes that of the bit string on the other side. MATIEC compares a bit string with a call of SEL, MUX
     /// and the like at its type, also where that is given numbers alone.
     fn bits_of_side(&self, ty: Option<Type>, side: &ast::Expr<'s>, op: BinaryOp) -> Option<Type> {
         let is_matiec = self.decl.dialect(side.span).rules().functions.choice == Functions::OfMatiec;
@@ -282,16 +282,32 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::BOOL), None) if is_junction(sides.op) => {
                 Some(format!("each side of {0} is a separate comparison: `x = 1 {0} x = 2`", sides.op.text()))
             }
-            (Some(Type::BOOL), None) if a.contains(['<', '>', '=']) => {
-                Some("join two comparisons: `low < x AND x < high`".to_owned())
-            }
+            (Some(Type::BOOL), None) if a.contains(['<', '>', '=']) => Some(match last_operand(a) {
+                Some(middle) => format!("compare twice: `{a} AND {middle} {} {b}`", sides.op.text()),
+                None => "join two comparisons: `low < x AND x < high`".to_owned(),
+            }),
             (Some(Type::Elementary(it)), None) if it.is_bits() && it != Elementary::Bool && !is_junction(sides.op) => {
                 Some(format!("write `{}`", converted(sides, it, as_number(it).name(), a, b)))
             }
             (Some(Type::Elementary(it)), None) if it.is_integer() && is_junction(sides.op) => {
-                let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
-                let bits = bits[usize::try_from(it.repr().size().trailing_zeros()).unwrap_or(0)];
-                Some(format!("write `{}`", converted(sides, it, bits, a, b)))
+                Some(format!("write `{}`", converted(sides, it, as_bits(it), a, b)))
+            }
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y)))
+                if x.is_integer() && x == y && is_junction(sides.op) =>
+            {
+                let op = sides.op.text();
+                let (x, bits) = (x.name(), as_bits(x));
+                Some(format!(
+                    "for bits, convert both with `{x}_TO_{bits}(…)`; for conditions, compare: `{a} <> 0 {op} {b} <> 0`"
+                ))
+            }
+            (Some(Type::Elementary(x)), _) if x.is_real() && sides.op == BinaryOp::Mod => {
+                Some(format!("write `{a} - {b} * DINT_TO_{}(TRUNC({a} / {b}))`", x.name()))
+            }
+            (Some(Type::BOOL), Some(Type::Elementary(_)))
+                if let (Some(middle), false) = (last_operand(a), is_junction(sides.op)) =>
+            {
+                Some(format!("compare twice: `{a} AND {middle} {} {b}`", sides.op.text()))
             }
             (Some(Type::Elementary(it)), None) if it.is_duration() => Some(format!("write the unit: `T#{b}ms`")),
             (None, Some(Type::Elementary(it))) if it.is_duration() => Some(format!("write the unit: `T#{a}ms`")),
@@ -738,6 +754,20 @@ pub(super) fn arithmetic_op(op: BinaryOp) -> Op {
         BinaryOp::Div => Op::Div,
         _ => Op::Mod,
     }
+}
+
+/// The bit string of as many bits as an integer.
+fn as_bits(integer: Elementary) -> &'static str {
+    let bits = ["BYTE", "WORD", "DWORD", "LWORD"];
+    bits[usize::try_from(integer.repr().size().trailing_zeros()).unwrap_or(0)]
+}
+
+/// The right side of a comparison of names and numbers.
+fn last_operand(text: &str) -> Option<&str> {
+    let (_, last) = text.rsplit_once(['<', '>', '='])?;
+    let last = last.trim();
+    let is_simple = !last.is_empty() && last.chars().all(|it| it.is_ascii_alphanumeric() || "_.".contains(it));
+    is_simple.then_some(last)
 }
 
 fn is_junction(op: BinaryOp) -> bool {

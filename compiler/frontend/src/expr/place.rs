@@ -362,9 +362,12 @@ impl<'s> Checker<'_, 's> {
                 let ty = self.type_name(self.type_of(&found));
                 let error = Diagnostic::new(Code::E0107, name.span, format!("{ty} has no members"))
                     .label(format!("{ty} cannot have a member `{}`", name.text));
-                self.report(match of_text.flatten() {
-                    Some(help) => error.help(help),
-                    None => self.through_reference(error, self.type_of(&found), base, name),
+                let length = self.function_for_length(base, name, self.type_of(&found));
+                let whole = Span { start: base.span.start, ..name.span };
+                self.report(match (of_text.flatten(), length) {
+                    (Some(help), _) => error.help(help),
+                    (None, Some(length)) => error.help(format!("write `{length}`")).fix(whole, length),
+                    (None, None) => self.through_reference(error, self.type_of(&found), base, name),
                 });
                 None
             }
@@ -541,7 +544,7 @@ impl<'s> Checker<'_, 's> {
         let own = self.own_pin_name(id, name);
         let at = pins.iter().position(|it| visible(&it) && it.name.eq_ignore_ascii_case(own.text));
         let Some(at) = at else {
-            self.report(super::unresolved::unknown_pin(id, name));
+            self.report(super::unresolved::unknown_pin(self.decl.dialect(name.span), id, name));
             return None;
         };
         let access = match found.access {

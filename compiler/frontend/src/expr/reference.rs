@@ -14,8 +14,8 @@ use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, BinaryOp, ExprKind as Ast};
 use staunch_ir::{
-    Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Place, RefKind, RefType, ReferenceId, Section, Statement,
-    StatementKind, Type, Value, reference::is_null,
+    Conversion, Elementary, Expr, ExprKind, FaultKind, Op, Place, Projection, RefKind, RefType, ReferenceId, Section,
+    Statement, StatementKind, Type, Value, reference::is_null,
 };
 
 /// The lower half of a reference's bits: its address.
@@ -100,10 +100,18 @@ impl<'s> Checker<'_, 's> {
         }
         let Type::Reference(id) = found.place.ty else {
             let ty = self.type_name(found.place.ty);
-            self.report(
-                Diagnostic::new(Code::E0211, span, format!("`^` needs a reference, but this is {ty}"))
-                    .label("this cannot be dereferenced"),
-            );
+            let error = Diagnostic::new(Code::E0211, span, format!("`^` needs a reference, but this is {ty}"));
+            let is_followed = matches!(found.place.projections.last(), Some(Projection::Deref { .. }));
+            self.report(match (is_followed, &inner.kind) {
+                (true, ast::ExprKind::Name(name)) => {
+                    let name = name.text;
+                    error
+                        .label("a REFERENCE TO is followed by itself")
+                        .help(format!("write `{name}` without `^`"))
+                        .fix(span, name)
+                }
+                _ => error.label("this cannot be dereferenced"),
+            });
             return None;
         };
         self.followed(found, id, span)

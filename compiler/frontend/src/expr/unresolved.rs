@@ -1,7 +1,7 @@
 //! Names that are not there, and what was probably meant.
 
 use super::checker::{Checker, Context};
-use crate::diagnostic::wording::{article, list};
+use crate::diagnostic::wording::{article, list, list_of_all};
 use crate::dialect::{Dialect, missing};
 use crate::names::functions;
 use crate::spelling::{Key, nearest};
@@ -68,16 +68,18 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: a
 }
 
 /// `c.RST` or `c(RESET := …)` on a block that has no such pin.
-pub(crate) fn unknown_pin(block: BlockId, name: ast::Name<'_>) -> Diagnostic {
+pub(crate) fn unknown_pin(dialect: Dialect, block: BlockId, name: ast::Name<'_>) -> Diagnostic {
     let info = block.info();
+    // The family is named where a bare name would mean another block.
+    let is_bare = crate::dialect::bare_block(dialect, info.name) == Some(block);
     let pins: Vec<_> = info.pins.iter().filter(|it| it.direction != Direction::Memory).map(|it| it.name).collect();
-    let full = format!("{}.{}", info.family.name(), info.name);
+    let full = if is_bare { info.name.to_owned() } else { format!("{}.{}", info.family.name(), info.name) };
     let error =
         Diagnostic::new(Code::E0301, name.span, format!("`{full}` has no pin `{}`", name.text)).label("unknown pin");
     let meant = other_dialects_pin(block, name.text).or_else(|| nearest(name.text, pins.iter().copied()));
     let error = match meant {
         Some(pin) => error.help(format!("did you mean `{pin}`?")).fix(name.span, pin),
-        None => error.help(format!("its pins are {}", list(&pins))),
+        None => error.help(format!("its pins are {}", list_of_all(&pins))),
     };
     let dialects = dialects_with_pin(block, name.text);
     if dialects.is_empty() {
@@ -274,7 +276,12 @@ impl<'s> Checker<'_, 's> {
         let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);
         let near =
             near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));
-        if let Some((_, help)) = FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
+        if let Some(helped) = self.help_on_s7_name(name, &error) {
+            error = match near {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
+                None => helped,
+            };
+        } else if let Some((_, help)) = FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
             error = error.help(*help);
         } else if let Some(hint) = self.decl.hint_of_namespace(name) {
             error = error.help(hint);

@@ -142,6 +142,11 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
             .label(format!("`{part}` is not a number"))
             .help("expected numbers with points between them after the size: `%IX0.0`, `%IW1.2.3`");
     }
+    if let (Some(meant), true) = (beyond(name.text), numbers == 2) {
+        return Diagnostic::new(Code::E0409, name.span, format!("`{}` is beyond its byte", name.text))
+            .label("the bits of a byte are 0 to 7")
+            .help(format!("the bit after bit 7 is in the next byte: `{meant}`"));
+    }
     let message = if numbers > Module::LEVELS + 1 && !name.text.contains("..") {
         format!(
             "`{}` has {numbers} numbers, but at most {} levels above the place are supported",

@@ -17,7 +17,7 @@ use crate::dialect::rules::is_followed;
 use crate::dialect::{self, Dialect, missing};
 use crate::log::Log;
 use crate::names::{Entry, Found, Meaning, Names, Sense, Site, SpaceId};
-use crate::spelling::{Key, nearest};
+use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast, start};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{
@@ -419,6 +419,11 @@ impl<'s> Declarations<'s> {
     }
 
     /// What SUPER names in a routine, or in a body: the base's body without a name.
+    pub fn routines_of_base(&self, slot: usize) -> &'s [ast::Pou<'s>] {
+        let base = self.pous[self.home(slot)].ast.extends.and_then(|it| self.class_named(it));
+        base.map_or(&[], |it| &self.pous[it].ast.routines)
+    }
+
     pub fn super_routines(&self, slot: usize, name: Option<ast::Name<'_>>) -> Option<Routines> {
         let Some(name) = name else {
             let base = self.class_named(self.pous[self.home(slot)].ast.extends?)?;
@@ -626,79 +631,6 @@ impl<'s> Declarations<'s> {
     /// Whether a slot is that of a run whose PROGRAM others call: the call does what the run would.
     pub fn is_run_of_named_program(&self, slot: usize) -> bool {
         self.named_programs.values().any(|it| it.run.is_some_and(|(run, _)| run == slot))
-    }
-
-    pub fn unknown_member(&mut self, name: ast::Name<'s>, ty: Type, near: Option<&str>) {
-        let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
-        let class = class.or_else(|| self.interface_of(ty));
-        if class.is_some_and(|it| self.has_unknown_parts(it) || self.has_unknown_base(it)) {
-            return;
-        }
-        let owner = self.program.type_name(ty);
-        if missing::is_member(self.dialect(name.span), &owner, name.text) {
-            return self.report(
-                Diagnostic::new(Code::E0902, name.span, format!("`{}` of {owner} is not supported yet", name.text))
-                    .label("a program does not know the machine that runs it"),
-            );
-        }
-        let routines = self.routines_on(ty, name.text);
-        if let Some((_, declared)) = routines.and_then(|it| it.setter.or(it.getter)) {
-            return self.report(
-                Diagnostic::new(Code::E0107, name.span, format!("the PROPERTY `{}` is not a variable", name.text))
-                    .label("nothing can call its SET here")
-                    .other(declared, "declared here")
-                    .help("give it a value where a variable of the type is declared, or assign it before it is used"),
-            );
-        }
-        if let Some((slot, declared)) = routines.and_then(|it| it.called) {
-            let kind = crate::diagnostic::wording::article(self.pous[slot].ast.kind.word());
-            return self.report(
-                Diagnostic::new(
-                    Code::E0107,
-                    name.span,
-                    format!("`{}` is {kind} of `{owner}`, but is not called", name.text),
-                )
-                .label("a call needs parentheses, even without arguments")
-                .other(declared, "declared here")
-                .help(format!("call it: `{}(…)`", name.text)),
-            );
-        }
-        let after = Span { start: name.span.end, end: name.span.end + 1, ..name.span };
-        let is_called = self.log.sources.text(after) == "(";
-        let routines = class.filter(|_| is_called).map_or(&[][..], |it| &self.pous[it].ast.routines);
-        let near = nearest(name.text, near.into_iter().chain(routines.iter().map(|it| it.name.text)));
-        let internal = class.filter(|_| !is_called && name.text.len() > 2).and_then(|it| {
-            let own = self.pous[it].ast.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
-            nearest(name.text, own.map(|it| it.text))
-        });
-        let mut error = Diagnostic::new(Code::E0107, name.span, format!("`{owner}` has no member `{}`", name.text))
-            .label("unknown member");
-        if let Some(near) = near {
-            error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
-            if let Some(internal) = internal.filter(|it| Key(it) != Key(near)) {
-                error = error.note(format!("`{internal}` is internal to `{owner}`"));
-            }
-        } else if let Some(internal) = internal {
-            error = error.help(format!("did you mean `{internal}`? It is internal to `{owner}`"));
-        } else if let Some(members) = self.member_names(ty) {
-            error = error.help(format!("it has {members}"));
-        }
-        self.report(error);
-    }
-
-    /// What can be named of a structure, enumeration or instance, for a message.
-    fn member_names(&self, ty: Type) -> Option<String> {
-        let names: Vec<&str> = match ty {
-            Type::Struct(id) => self.members_of(id).collect(),
-            Type::Enum(id) => self.program.enumeration(id).values.iter().map(|it| it.name.as_str()).collect(),
-            Type::Elementary(_)
-            | Type::Reference(_)
-            | Type::Subrange(..)
-            | Type::String(_)
-            | Type::Array(_)
-            | Type::Block(_) => Vec::new(),
-        };
-        (1..=12).contains(&names.len()).then(|| crate::diagnostic::wording::list(&names).replace(" or ", " and "))
     }
 }
 

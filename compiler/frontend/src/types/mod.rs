@@ -26,5 +26,6 @@ mod storage;
 pub(crate) mod synthetic;
 pub(crate) mod table;
 pub(crate) mod tests;
+mod unknown_member;
 pub(crate) mod whole;
 pub(crate) mod window;

@@ -63,7 +63,7 @@ fn is_output(pin: &Pin) -> bool {
     pin.direction == Direction::Output
 }
 
-/// Whether it is what a counter shows: the members of a structure are no outputs.
+/// Whether it is what a counter shows: the members of a structure are not outputs.
 fn shows(pin: &Pin) -> bool {
     matches!(pin.role, Some(PinRole::Count | PinRole::Done | PinRole::Empty))
 }

@@ -189,6 +189,7 @@ codes! {
     W0518 Warning "a variable alone";
     W0520 Warning "the size of a pointer";
     W0521 Warning "a shift that C leaves undefined";
+    W0522 Warning "a stimulus that the program overwrites";
     W0523 Warning "division by the constant 0";
     W0524 Warning "immediate values give more than a DINT holds";
     W0525 Warning "a lower unit of a TIME overflows";
@@ -196,6 +197,7 @@ codes! {
     W0527 Warning "a check that CODESYS calls implicitly";
     W0528 Warning "a diagram that other versions execute in another order";
     W0529 Warning "the system does it otherwise";
+    W0530 Warning "an assignment as a condition";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";

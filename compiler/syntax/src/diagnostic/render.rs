@@ -278,7 +278,7 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
         }
         None => out.push_str("null"),
     }
-    field(&mut out, "rendered", &render(diagnostic, sources, Format::Human, Style::default()));
+    field(&mut out, "rendered", &(human(diagnostic, sources, Style::default()) + "\n"));
     out.push('}');
     out
 }

@@ -10,6 +10,15 @@ pub fn list(names: &[&str]) -> String {
     }
 }
 
+/// `a`, `a and b`, `a, b and c`: all of them.
+pub fn list_of_all(names: &[&str]) -> String {
+    let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
+    match quoted.as_slice() {
+        [init @ .., last] if !init.is_empty() => format!("{} and {last}", init.join(", ")),
+        _ => list(names),
+    }
+}
+
 /// `a word`, `an INT`, `an FBD_COUNTER`: an abbreviation without a vowel is read letter by letter.
 pub fn article(word: &str) -> String {
     let first = word.split(|it: char| !it.is_ascii_alphanumeric()).next().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Columns: the types and values of declarations, and the comments at the ends of lines, stand below one another.
+//! Columns: the types and values of declarations, and the comments at the ends of lines, are aligned.
 
 use super::indent::{Indenter, Layout};
 use super::lines::gap;

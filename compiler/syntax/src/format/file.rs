@@ -12,7 +12,7 @@ pub enum Refusal {
     Foreign,
     /// It is not well-formed XML.
     Broken,
-    /// It has bytes that are no characters.
+    /// It has bytes that are not UTF-8.
     Encoding,
     /// Its tokens would change, which is a mistake of the formatter.
     Internal,
@@ -24,7 +24,7 @@ impl Refusal {
         match self {
             Self::Foreign => "this file of another system is not laid out: only files of text and TwinCAT's are",
             Self::Broken => "this file of TwinCAT is not well-formed XML",
-            Self::Encoding => "this file has bytes that are no characters",
+            Self::Encoding => "this file has bytes that are not characters",
             Self::Internal => "the formatter would change what this file says; this is a bug in Staunch",
         }
     }

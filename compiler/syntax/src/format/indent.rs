@@ -1,4 +1,4 @@
-//! How far each line stands to the right: by the blocks and brackets that are open where it starts.
+//! How far each line is indented: by the blocks and brackets that are open where it starts.
 
 use super::blocks::{Block, Blocks, Pair};
 use super::roles::Role;
@@ -12,7 +12,7 @@ pub struct Layout<'t, 's> {
     pub tokens: &'t [Token<'s>],
     pub blocks: &'t Blocks,
     pub roles: &'t [Role],
-    /// For each token the next one that is no comment, itself or after it; none for comments at the end.
+    /// For each token the next one that is not a comment, itself or after it; none for comments at the end.
     pub code: &'t [usize],
     pub style: &'t Style,
 }
@@ -40,11 +40,11 @@ pub struct Indenter<'t, 's> {
     statement: usize,
     /// A statement or a declaration starts here.
     pub starts: bool,
-    /// The statement is the head of a block: its further lines stand out from the block's.
+    /// The statement is the head of a block: its further lines are indented more than the block.
     is_head: bool,
     /// The lines of a head that no sign ends: `FUNCTION_BLOCK Pump`.
     is_line_head: bool,
-    /// The last token that is no comment.
+    /// The last token that is not a comment.
     before: Option<usize>,
 }
 
@@ -124,7 +124,7 @@ impl<'t, 's> Indenter<'t, 's> {
         let Some(open) = self.open.last() else { return 0 };
         let is_label = next.is_some_and(|it| self.layout.roles[it] == Role::Label);
         let inner = match open.pair.block {
-            // Routines stand to the right of their POU, and POUs of their namespace.
+            // Routines are indented in their POU, and POUs in their namespace.
             Block::Pou => usize::from(self.layout.style.indents_pous || next.is_some_and(|it| self.opens_pou(it))),
             Block::Type => usize::from(self.layout.tokens.get(open.pair.open + 1).is_some_and(|it| it.breaks > 0)),
             Block::Case if open.is_labelled && !is_label => 2,
@@ -137,7 +137,7 @@ impl<'t, 's> Indenter<'t, 's> {
         self.layout.blocks.opened(at).is_some_and(|it| it.block == Block::Pou)
     }
 
-    /// Whether a line goes on with the head before it: `EXTENDS Base`.
+    /// Whether a line continues the head before it: `EXTENDS Base`.
     fn continues_head(&self, at: usize) -> bool {
         let token = &self.layout.tokens[at];
         let is_open = |it: usize| matches!(self.layout.tokens[it].kind, Kind::Colon | Kind::Comma);

@@ -100,6 +100,7 @@ impl Reader<'_, '_> {
             Kind::Minus | Kind::Plus if is_first() => Some(Role::Unary),
             Kind::And | Kind::Or | Kind::Xor | Kind::Mod if is_first() => Some(Role::Function),
             Kind::Equal if !token.is_apart && is_bound(self.tokens, self.before, self.second) => Some(Role::Glued),
+            _ if is_of_configuration(self.tokens, &self.inside, at, self.second) => Some(Role::Word),
             Kind::Name if self.is_in_head || self.is_in_declarations() => {
                 let before = self.before.map(|it| self.tokens[it].kind);
                 let is_word = is_type(token, before) || is_word(token, self.tokens.get(at + 1), self.is_in_head);
@@ -168,6 +169,23 @@ fn is_type(token: &Token<'_>, before: Option<Kind>) -> bool {
             || ["STRING", "WSTRING"].iter().any(|it| token.is_word(it))
     };
     is_expected && is_standard()
+}
+
+/// `ON` after the name of a RESOURCE, `TASK` before its name, and `PROGRAM … WITH` in a CONFIGURATION.
+fn is_of_configuration(tokens: &[Token<'_>], inside: &[Pair], at: usize, second: Option<usize>) -> bool {
+    if !inside.iter().any(|it| tokens[it.open].kind == Kind::Configuration) {
+        return false;
+    }
+    let token = &tokens[at];
+    let is_named = tokens.get(at + 1).is_some_and(|it| it.kind == Kind::Name);
+    let follows = |is: &dyn Fn(&Token<'_>) -> bool| second.is_some_and(|it| is(&tokens[it]));
+    match token.kind {
+        Kind::Program => is_named,
+        Kind::Name if token.is_word("TASK") => is_named && token.breaks > 0,
+        Kind::Name if token.is_word("ON") => follows(&|it| it.is_word("RESOURCE")),
+        Kind::Name if token.is_word("WITH") => follows(&|it| it.kind == Kind::Program),
+        _ => false,
+    }
 }
 
 /// Words of the head of a POU, before a name.

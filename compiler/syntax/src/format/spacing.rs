@@ -1,4 +1,4 @@
-//! Whether a space stands between two tokens of a line.
+//! Whether a space is printed between two tokens of a line.
 
 use super::roles::Role;
 use super::token::Token;

@@ -7,7 +7,7 @@ pub struct Style {
     /// Columns of a line, without the comment at its end.
     pub width: usize,
     pub keywords: Letters,
-    /// What is in a POU stands to the right of its first line.
+    /// What is in a POU is indented.
     pub indents_pous: bool,
 }
 

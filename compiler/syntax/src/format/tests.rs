@@ -46,6 +46,16 @@ fn line_ends_and_the_end_of_a_part_stay() {
 }
 
 #[test]
+fn words_of_a_configuration_are_keywords() {
+    let text = "configuration Plant\nresource Cpu on Plc\ntask fast(interval := T#10ms);\nprogram on with fast : Main;\n\
+                program with with fast : Main;\nend_resource\nend_configuration\non := task + with;\n";
+    let expected = "CONFIGURATION Plant\n    RESOURCE Cpu ON Plc\n        TASK fast(interval := T#10ms);\n        \
+                    PROGRAM on WITH fast : Main;\n        PROGRAM with WITH fast : Main;\n    END_RESOURCE\n\
+                    END_CONFIGURATION\non := task + with;\n";
+    assert_eq!(usual(text), expected);
+}
+
+#[test]
 fn the_style_decides() {
     let style = Style { indent: Indent::Tab, keywords: Letters::Lower, indents_pous: true, ..Style::default() };
     let text = "PROGRAM Main\nVAR\na : INT;\nEND_VAR\na := 1;\nEND_PROGRAM\n";

@@ -36,7 +36,7 @@ pub fn part(text: &str, style: &Style) -> Option<String> {
     says_the_same(&tokens, &token::read(&laid_out)).then_some(laid_out)
 }
 
-/// For each token the next one that is no comment; comments at the end of the text are left out.
+/// For each token the next one that is not a comment; comments at the end of the text are left out.
 fn next_code(tokens: &[Token<'_>]) -> Vec<usize> {
     let last = tokens.iter().rposition(|it| !it.is_aside());
     let mut next = last.unwrap_or(0);

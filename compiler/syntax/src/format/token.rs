@@ -1,7 +1,6 @@
 //! The tokens of a text with its comments and pragmas, and with what the layout asks of the white space between them.
 
-use crate::lex::Kind;
-use logos::Logos;
+use crate::lex::{Kind, Scanner};
 
 #[derive(Clone, Copy, Debug)]
 pub struct Token<'s> {
@@ -18,7 +17,7 @@ pub struct Token<'s> {
 }
 
 impl Token<'_> {
-    /// A comment or a pragma, which may stand anywhere.
+    /// A comment or a pragma, which may be anywhere.
     pub fn is_aside(&self) -> bool {
         matches!(self.kind, Kind::Comment | Kind::Pragma)
     }
@@ -40,13 +39,13 @@ impl Token<'_> {
 /// Reads a text; nothing of it but white space is left out.
 pub fn read(text: &str) -> Vec<Token<'_>> {
     let mut tokens: Vec<Token<'_>> = Vec::with_capacity(text.len() / 4 + 16);
-    let mut lexer = Kind::lexer(text);
+    let mut lexer = Scanner::new(text);
     let mut end = 0;
     while let Some(kind) = lexer.next() {
         let place = lexer.span();
         let between = &text[end..place.start];
         let mut token = Token {
-            kind: kind.unwrap_or(Kind::Unknown),
+            kind,
             text: &text[place.clone()],
             breaks: between.bytes().filter(|it| *it == b'\n').count(),
             is_apart: !between.is_empty(),
@@ -114,10 +113,10 @@ fn switched(comment: &str) -> Option<&str> {
 
 /// The length of what is left as it is, with the white space before the comment that ends it.
 fn until_on(text: &str) -> usize {
-    let mut lexer = Kind::lexer(text);
+    let mut lexer = Scanner::new(text);
     while let Some(kind) = lexer.next() {
         let place = lexer.span();
-        if kind == Ok(Kind::Comment) && switched(&text[place.clone()]) == Some("on") {
+        if kind == Kind::Comment && switched(&text[place.clone()]) == Some("on") {
             return place.start;
         }
     }

@@ -35,7 +35,7 @@ fn is_keyword(layout: Layout<'_, '_>, at: usize) -> bool {
     match token.kind.keyword() {
         // `TO := 5` names an input; S7 has variables with such names.
         Some(_) if layout.tokens.get(at + 1).is_some_and(|it| names(it.kind)) && !is_value(token.kind) => false,
-        Some(_) => !opens || is_of_block,
+        Some(_) => !opens || is_of_block || layout.roles[at] == Role::Word,
         None => is_of_block || layout.roles[at] == Role::Word,
     }
 }

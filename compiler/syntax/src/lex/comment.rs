@@ -1,13 +1,9 @@
-//! The ends of comments and pragmas. Each takes the rest of the text when its end is missing;
-//! the caller sees that from the last characters.
-
-use logos::Lexer;
-
-use super::Kind;
+//! The ends of comments and pragmas, as the bytes up to them from after their beginning. That is the rest of the text when the
+//! end is missing; the caller sees that from the last characters.
 
 /// `(* … (* … *) … *)`
-pub fn nested(lexer: &mut Lexer<'_, Kind>) {
-    let bytes = lexer.remainder().as_bytes();
+pub fn nested(rest: &str) -> usize {
+    let bytes = rest.as_bytes();
     let mut depth = 1_usize;
     let mut at = 0;
     while at + 1 < bytes.len() {
@@ -21,26 +17,24 @@ pub fn nested(lexer: &mut Lexer<'_, Kind>) {
         }
         at += 2;
         if depth == 0 {
-            lexer.bump(at);
-            return;
+            return at;
         }
     }
-    lexer.bump(bytes.len());
+    bytes.len()
 }
 
 /// `/* … */`
-pub fn plain(lexer: &mut Lexer<'_, Kind>) {
-    until(lexer, "*/");
+pub fn plain(rest: &str) -> usize {
+    until(rest, "*/")
 }
 
 /// `{ … }`, or `{{ … }}` around code in C.
-pub fn pragma(lexer: &mut Lexer<'_, Kind>) {
-    until(lexer, if lexer.remainder().starts_with('{') { "}}" } else { "}" });
+pub fn pragma(rest: &str) -> usize {
+    until(rest, if rest.starts_with('{') { "}}" } else { "}" })
 }
 
-fn until(lexer: &mut Lexer<'_, Kind>, end: &str) {
-    let rest = lexer.remainder();
-    lexer.bump(rest.find(end).map_or(rest.len(), |at| at + end.len()));
+fn until(rest: &str, end: &str) -> usize {
+    rest.find(end).map_or(rest.len(), |at| at + end.len())
 }
 
 /// Whether a comment or pragma reached its own end.

@@ -2,8 +2,6 @@
 
 use core::fmt;
 
-use logos::Logos;
-
 /// Makes the token kinds: keywords in any case, then signs, then kinds with many spellings.
 macro_rules! kinds {
     (
@@ -12,13 +10,15 @@ macro_rules! kinds {
         rest { $($(#[$attribute:meta])* $kind:ident $shown:literal)* }
     ) => {
         /// What a token is; its text and value are read from its span when they are needed.
-        #[derive(Logos, Clone, Copy, Debug, PartialEq, Eq, Hash)]
-        #[logos(skip r"[ \t\r\n\f]+")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         pub enum Kind {
-            $(#[token($word, ignore(case))] $keyword,)*
-            $(#[token($text)] $sign,)*
+            $($keyword,)*
+            $($sign,)*
             $($(#[$attribute])* $kind,)*
         }
+
+        const WORDS: &[(&str, Kind)] = &[$(($word, Kind::$keyword)),*];
+        const SIGNS: &[(&str, Kind)] = &[$(($text, Kind::$sign)),*];
 
         impl Kind {
             /// A reserved word's own spelling.
@@ -169,41 +169,82 @@ kinds! {
         SlashEqual "/="
     }
     rest {
-        #[regex(r"[A-Za-z_\p{Alphabetic}][A-Za-z0-9_\p{Alphabetic}]*")]
         Name "a name"
-        #[regex(r"[A-Za-z_][A-Za-z0-9_]*#")]
+        /// A type, and its `#`.
         Prefix "a type prefix"
-        #[regex(r"[0-9][0-9_]*")]
         Integer "a number"
-        #[regex(r"[0-9][0-9_]*#[0-9A-Za-z_]*")]
+        /// `16#FF`
         Based "a number"
-        #[regex(r"[0-9][0-9_]*\.[0-9][0-9_]*([eE][+-]?[0-9][0-9_]*)?")]
-        #[regex(r"[0-9][0-9_]*[eE][+-]?[0-9][0-9_]*")]
         Real "a number"
-        #[regex(r"(T|TIME|LT|LTIME)#[+-]?[0-9][0-9A-Za-z_]*(\.[0-9A-Za-z_]+)*", ignore(case))]
+        /// `T#5s`
         Time "a duration"
-        #[regex(r"(D|DATE|LD|LDATE|TOD|TIME_OF_DAY|LTOD|LTIME_OF_DAY|DT|DATE_AND_TIME|LDT|LDATE_AND_TIME)#[0-9][0-9_]*([-:.][0-9_]+)*", ignore(case))]
+        /// `D#2024-02-29`, `TOD#12:30:00`
         Date "a date"
-        #[regex(r"'([^'$\r\n]|\$[^\r\n])*'")]
         Text "a string"
-        #[regex(r#""([^"$\r\n]|\$[^\r\n])*""#)]
+        /// In double quotes.
         WideText "a string"
-        #[regex(r"'([^'$\r\n]|\$[^\r\n])*")]
-        #[regex(r#""([^"$\r\n]|\$[^\r\n])*"#)]
         OpenText "a string that is not closed"
-        #[regex(r"%[IQMiqm][A-Za-z]?(\*|[0-9]+(\.[0-9A-Za-z_]+)*)")]
+        /// `%IX0.3`
         Address "an address"
-        #[regex(r"%[XBWDLxbwdl][0-9]+")]
+        /// `%X3`, after a point.
         Part "a part"
-        #[token("(*", super::comment::nested)]
-        #[token("/*", super::comment::plain)]
-        #[regex(r"//[^\n]*", allow_greedy = true)]
         Comment "a comment"
-        #[token("{", super::comment::pragma)]
         Pragma "a pragma"
         /// Characters that do not form a token; reported by the lexer.
         Unknown "an unknown character"
-        /// Stands once, after the last token.
+        /// Once, after the last token.
         End "the end of the file"
+    }
+}
+
+/// Places of words in a table by their hash, two for each.
+const SLOTS: usize = 256;
+const _: () = assert!(2 * WORDS.len() <= SLOTS && WORDS.len() < u8::MAX as usize);
+
+/// For each hash the number of a word plus 1; 0 where no word is, and the search ends.
+static TABLE: [u8; SLOTS] = {
+    let mut table = [0; SLOTS];
+    let mut at = 0;
+    while at < WORDS.len() {
+        let mut slot = hash(WORDS[at].0.as_bytes());
+        while table[slot] != 0 {
+            slot = (slot + 1) % SLOTS;
+        }
+        at += 1;
+        table[slot] = at as u8;
+    }
+    table
+};
+
+/// Of the length, and of three letters in either case.
+const fn hash(word: &[u8]) -> usize {
+    let (first, middle, last) = (word[0] & 31, word[word.len() / 2] & 31, word[word.len() - 1] & 31);
+    (word.len() + 7 * first as usize + 37 * middle as usize + 101 * last as usize) % SLOTS
+}
+
+impl Kind {
+    /// The keyword that a word is, in any case.
+    pub(super) fn of_word(word: &[u8]) -> Option<Self> {
+        let mut slot = hash(word);
+        while let Some(at) = usize::from(TABLE[slot]).checked_sub(1) {
+            let (text, kind) = WORDS[at];
+            if text.as_bytes().eq_ignore_ascii_case(word) {
+                return Some(kind);
+            }
+            slot = (slot + 1) % SLOTS;
+        }
+        None
+    }
+
+    /// The sign of two characters.
+    pub(super) fn of_signs(first: u8, second: u8) -> Option<Self> {
+        let found = SIGNS.iter().find(|it| matches!(*it.0.as_bytes(), [a, b] if a == first && b == second));
+        found.map(|it| it.1)
+    }
+
+    /// The sign of one character.
+    pub(super) fn of_sign(sign: u8) -> Option<Self> {
+        let found = SIGNS.iter().find(|it| matches!(*it.0.as_bytes(), [it] if it == sign));
+        found.map(|it| it.1)
     }
 }

@@ -1,4 +1,4 @@
-//! Sequential function charts as text (IEC 61131-3, edition 2, B.1.6): INITIAL_STEP, STEP and TRANSITION, beside the ACTIONs of the
+//! Sequential function charts as text (IEC 61131-3, edition 2, B.1.6): INITIAL_STEP, STEP and TRANSITION, with the ACTIONs of the
 //! POU. Their words are names everywhere else.
 
 use crate::{
@@ -232,7 +232,7 @@ fn end(input: &mut In<'_, '_, '_>, end: &str) -> Parsed<()> {
     Ok(())
 }
 
-/// Whether the POU goes on with something else, or ends.
+/// Whether the POU continues with something else, or ends.
 fn is_outside(input: &mut In<'_, '_, '_>) -> bool {
     let kind = input.kind();
     kind == Kind::End || is_pou_end(kind) || opens_item(kind) || begins(input) || routine::begins(input).is_some()

@@ -16,6 +16,7 @@ use super::{
     expression::arguments,
     foreign_types,
     initial::optional_initial,
+    misspelt,
     parser::{Expected, In, Parsed, Start, TokenReader},
     pragma::{instance_path_here, starts_at_calls_here},
     recovery,
@@ -75,6 +76,7 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
         token(Kind::NonRetain).map(|span| (Qualifier::NonRetain, span)),
         token(Kind::Persistent).map(|span| (Qualifier::Persistent, span)),
         section_access().map(|(access, span)| (Qualifier::Access(access), span)),
+        misspelt_qualifier(),
     ));
     let opened = foreign_types::section_of_two_words().or(kind).map(|(kind, span)| VarBlock::new(kind, span));
     opened.foldl(qualifier.repeated(), |mut block, (qualifier, span)| {
@@ -86,6 +88,21 @@ fn section_head<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
             Qualifier::Access(access) => block.access = Some((access, span)),
         }
         block
+    })
+}
+
+/// `VAR RETIAN`: a word before the first declaration that is nearly a qualifier.
+fn misspelt_qualifier<'t, 's: 't>() -> impl Rule<'t, 's, (Qualifier, Span)> {
+    rule(|input| {
+        let meant = misspelt::misspelt_qualifier(input).ok_or_else(|| input.problem(Expected::Name))?;
+        let span = input.take();
+        diagnostics::misspelt_keyword(input, meant, span);
+        Ok(match meant {
+            Kind::Retain => (Qualifier::Retain, span),
+            Kind::NonRetain => (Qualifier::NonRetain, span),
+            Kind::Persistent => (Qualifier::Persistent, span),
+            _ => (Qualifier::Constant, span),
+        })
     })
 }
 

@@ -95,6 +95,14 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
                 .help("write the type after the name: ` : INT`")
                 .fix(after, " : INT")
         }
+        (Expected::Action, _) if is_operator(found) => {
+            Diagnostic::new(Code::E0001, span, "a statement assigns a value, or calls something")
+                .label("this only computes")
+                .help("assign what it computes: `x := …;`")
+        }
+        (Expected::Action, _) if found == Kind::Name && names_a_word_more(input, problem.at) => {
+            return two_words(input, problem.at);
+        }
         (Expected::Other, _) => {
             let it = Diagnostic::new(Code::E0001, span, format!("{shown} cannot be here"));
             it.label("this does not fit what comes before it")
@@ -106,6 +114,27 @@ pub fn report(input: &mut In<'_, '_, '_>, problem: Problem) {
         }
     };
     input.report(it);
+}
+
+fn is_operator(kind: Kind) -> bool {
+    matches!(kind, Kind::Plus | Kind::Minus | Kind::Star | Kind::Slash | Kind::And | Kind::Or | Kind::Xor | Kind::Mod)
+        || (is_comparison(kind) && kind != Kind::Equal)
+}
+
+/// `motor speed := 3`, at the second word.
+fn names_a_word_more(input: &mut In<'_, '_, '_>, at: usize) -> bool {
+    let state = input.state();
+    let Some(before) = at.checked_sub(1) else { return false };
+    let kinds = state.tokens.kinds.get(before..).unwrap_or_default();
+    let is_first = before == 0 || !matches!(state.tokens.kinds.get(before - 1), Some(Kind::Dot));
+    is_first
+        && kinds.starts_with(&[Kind::Name, Kind::Name, Kind::Assign])
+        && !state.breaks(state.place(before).end, state.place(at).start)
+}
+
+fn two_words(input: &mut In<'_, '_, '_>, at: usize) {
+    let (first, second) = (input.state().place(at - 1), input.state().place(at));
+    name_of_two_words(input, first, second);
 }
 
 fn is_comparison(kind: Kind) -> bool {
@@ -340,6 +369,14 @@ pub fn return_value(span: Span, value: Span) -> Diagnostic {
     Diagnostic::new(Code::E0019, span, "RETURN takes no value")
         .other(value, "the value must be assigned first")
         .help("assign the result to the function's own name, then write `RETURN;`")
+}
+
+/// `RETURN();`
+pub fn return_called(parentheses: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0019, parentheses, "RETURN is a statement, and takes no parentheses")
+        .label("delete this")
+        .help("write `RETURN;`")
+        .fix(parentheses, "")
 }
 
 /// More of one list than anybody writes.

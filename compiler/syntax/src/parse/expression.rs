@@ -11,7 +11,7 @@ use crate::{
 
 use super::{
     combinator::{Rule, rule},
-    diagnostics, foreign_syntax, literal,
+    diagnostics, foreign_expression, foreign_syntax, literal,
     parser::{Expected, In, Parsed, Problem, TokenReader, Waiting},
     token_class::ends_statements,
     unsupported,
@@ -29,7 +29,7 @@ fn infix(kind: Kind) -> Option<(BinaryOp, u8)> {
         Kind::And | Kind::Ampersand | Kind::AndAnd => (BinaryOp::And, 3),
         Kind::AndThen => (BinaryOp::AndThen, 3),
         Kind::Equal | Kind::EqualEqual => (BinaryOp::Eq, 4),
-        Kind::Unequal | Kind::BangEqual => (BinaryOp::Ne, 4),
+        Kind::Unequal | Kind::BangEqual | Kind::SlashEqual => (BinaryOp::Ne, 4),
         Kind::Less => (BinaryOp::Lt, 5),
         Kind::Greater => (BinaryOp::Gt, 5),
         Kind::LessEqual => (BinaryOp::Le, 5),
@@ -50,6 +50,7 @@ fn is_foreign(kind: Kind) -> bool {
         kind,
         Kind::EqualEqual
             | Kind::BangEqual
+            | Kind::SlashEqual
             | Kind::AndAnd
             | Kind::OrOr
             | Kind::Percent
@@ -520,7 +521,11 @@ fn primary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
 fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let span = input.here();
     let kind = match input.kind() {
-        Kind::Name => ExprKind::Name(input.name()?),
+        Kind::Name if foreign_expression::module_tag(input).is_some() => ExprKind::Error(Vec::new()),
+        Kind::Name => match foreign_expression::without_parentheses(input) {
+            Some(operand) => return operand,
+            None => ExprKind::Name(input.name()?),
+        },
         // The functions of these names: `AND(a, b, c)`.
         Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not if input.kind_ahead(1) == Kind::OpenParen => {
             input.take();
@@ -554,6 +559,9 @@ fn parenthesis<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     input.leave(1);
     if input.eat(Kind::CloseParen).is_none() {
         return Err(input.problem(Expected::Closing(Kind::CloseParen, opened)));
+    }
+    if let Some(cast) = foreign_expression::cast(input, &inner) {
+        return cast;
     }
     let height = input.state().height;
     input.grow(height)?;

@@ -264,6 +264,11 @@ fn do_loop(input: &mut In<'_, '_, '_>) -> bool {
         }
         return true;
     }
+    if let Some(count) = repeated(input) {
+        refuse(input, word, message, help);
+        skip_tokens(input, count);
+        return true;
+    }
     let is_of_basic = matches!(input.kind_ahead(1), Kind::While | Kind::Until) && !starts_line(input, 1);
     if is_of_basic {
         refuse(input, word, message, "write `WHILE x < 5 DO … END_WHILE`");
@@ -277,6 +282,33 @@ fn do_loop(input: &mut In<'_, '_, '_>) -> bool {
         skip_tokens(input, 1);
     }
     is_of_basic
+}
+
+/// Tokens up to the `;` of `DO … WHILE x < 5;`, which starts here.
+fn repeated(input: &mut In<'_, '_, '_>) -> Option<usize> {
+    let mut loops = 0usize;
+    let mut ahead = 1;
+    while ahead < FURTHEST {
+        let kind = input.kind_ahead(ahead);
+        match kind {
+            Kind::End => return None,
+            _ if is_pou_end(kind) => return None,
+            Kind::For | Kind::Do => loops += 1,
+            Kind::While => {
+                let ends = (ahead..FURTHEST).find(|it| {
+                    let kind = input.kind_ahead(*it);
+                    matches!(kind, Kind::Semicolon | Kind::Do | Kind::End) || is_pou_end(kind)
+                })?;
+                if input.kind_ahead(ends) == Kind::Semicolon {
+                    return (loops == 0 && ahead > 1).then_some(ends);
+                }
+                ahead = ends;
+            }
+            _ => {}
+        }
+        ahead += 1;
+    }
+    None
 }
 
 /// `SWITCH x … END_SWITCH`, `switch x { … }`

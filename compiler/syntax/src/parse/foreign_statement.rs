@@ -14,7 +14,7 @@ use super::{
         starts_line,
     },
     foreign_syntax::joins_name,
-    parser::{In, TokenReader},
+    parser::{In, Parsed, Problem, TokenReader},
 };
 
 /// Refuses and skips such a statement, if one starts here.
@@ -63,7 +63,7 @@ fn two_names(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 /// The type here that a word of another language is.
-fn type_of_ours(word: &str) -> Option<&'static str> {
+pub fn type_of_ours(word: &str) -> Option<&'static str> {
     let types = [
         ("int", "DINT"),
         ("integer", "DINT"),
@@ -207,4 +207,21 @@ fn exit_by_name(input: &mut In<'_, '_, '_>) -> bool {
     );
     input.eat(Kind::Semicolon);
     true
+}
+
+/// `REF =`, `S =`: refused where the `=` follows the word at some distance.
+pub fn split_latch(input: &mut In<'_, '_, '_>) -> Parsed<()> {
+    let words = ["REF=", "S=", "R="];
+    let (word, at) = (input.here(), input.number());
+    let text = input.text(word).to_ascii_uppercase();
+    let meant = words.into_iter().find(|it| it.strip_suffix('=') == Some(text.as_str()));
+    let Some(meant) = meant.filter(|_| input.kind_ahead(1) == Kind::Equal) else { return Ok(()) };
+    let whole = word.to(input.state().place(at + 1));
+    input.report(
+        Diagnostic::new(Code::E0001, whole, format!("`{meant}` is written in one piece"))
+            .label(format!("expected `{meant}`"))
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+    Err(Problem::REPORTED)
 }

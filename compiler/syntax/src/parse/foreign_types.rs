@@ -50,7 +50,10 @@ pub fn bounds_in_parentheses<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
     let parenthesis = ahead(|input| input.kind() == Kind::OpenParen);
     reported(parenthesis, |(), state, tokens| {
         let span = state.span(tokens);
-        state.report(diagnostics::array_bounds(span, "`(`", "ARRAY[1..3] OF INT"));
+        let close = state.tokens.kinds.iter().skip(tokens.start).position(|it| *it == Kind::CloseParen);
+        let bounds = close.map(|it| Span { start: span.end, end: state.place(tokens.start + it).start, ..span });
+        let bounds = bounds.map_or("1..3", |it| state.slice(it));
+        state.report(diagnostics::array_bounds(span, "`(`", &format!("ARRAY[{bounds}] OF …")));
     })
 }
 
@@ -193,11 +196,21 @@ pub fn type_before_name<'t, 's: 't>(names: &[Name<'s>]) -> impl Rule<'t, 's, Opt
         let follows = matches!(input.kind_ahead(1), Kind::Semicolon | Kind::Assign | Kind::Equal | Kind::Comma);
         input.kind() == Kind::Name && follows && is_type()
     });
-    let first = reported(name(), move |name, state, _| {
-        if let Some(ty) = ty {
-            state.report(diagnostics::type_first(state, ty.span, name.span));
+    let first = rule(move |input| {
+        let name = input.name()?;
+        let Some(ty) = ty else { return Ok(name) };
+        if input.kind() != Kind::Equal {
+            let error = diagnostics::type_first(input.state(), ty.span, name.span);
+            input.report(error);
+            return Ok(name);
         }
-        name
+        // `INT x = 3` is one mistake.
+        let sign = input.take();
+        let meant = format!("{} : {} :=", name.text, ty.text);
+        let error = diagnostics::type_first(input.state(), ty.span, name.span);
+        input.report(error.help(format!("write `{meant} …`")).fix(ty.span.to(sign), meant));
+        input.state().instead = Some(Kind::Assign);
+        Ok(name)
     });
     let names = first.then(token(Kind::Comma).ignore_then(name()).repeated().collect::<Vec<_>>());
     swapped.ignore_then(names).or_not().map(move |found| {

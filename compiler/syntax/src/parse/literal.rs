@@ -56,7 +56,7 @@ fn has_more(input: &mut In<'_, '_, '_>) -> bool {
     let is_name = input.kind() == Kind::Name;
     match input.state().tokens.kinds.get(at) {
         Some(Kind::Date) => {
-            let count = clock_apart(input.state(), at);
+            let count = clock_apart(input.state(), at).max(slashes(input.state(), at));
             for _ in 0..count {
                 input.take();
             }
@@ -90,6 +90,21 @@ fn clock_apart(state: &State<'_, '_>, at: usize) -> usize {
         && lex::date(state.slice(date)).is_err()
         && lex::date(&in_one_piece(state, at, count).1).is_ok();
     if is_meant { count } else { 0 }
+}
+
+/// `D#2024/02/29`: how many tokens follow the year.
+fn slashes(state: &State<'_, '_>, at: usize) -> usize {
+    let shape = [Kind::Slash, Kind::Integer, Kind::Slash, Kind::Integer];
+    let is_joined = (at..at + shape.len()).all(|it| state.place(it).end == state.place(it + 1).start);
+    let follows = state.tokens.kinds.get(at + 1..).is_some_and(|it| it.starts_with(&shape));
+    let is_meant = follows && is_joined && lex::date(&with_hyphens(state, at).1).is_ok();
+    if is_meant { shape.len() } else { 0 }
+}
+
+/// Such a literal, and as it is meant.
+fn with_hyphens(state: &State<'_, '_>, at: usize) -> (Span, String) {
+    let whole = state.place(at).to(state.place(at + 4));
+    (whole, state.slice(whole).replace('/', "-"))
 }
 
 /// Such a literal, and as it is meant.
@@ -179,6 +194,15 @@ fn date<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
         let (whole, meant) = in_one_piece(state, at, count);
         state.report(
             Diagnostic::new(Code::E0006, whole, "a date and a time of day are written in one piece")
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        return LiteralValue::Error;
+    }
+    if slashes(state, at) > 0 {
+        let (whole, meant) = with_hyphens(state, at);
+        state.report(
+            Diagnostic::new(Code::E0006, whole, "the parts of a date are separated by `-`")
                 .help(format!("write `{meant}`"))
                 .fix(whole, meant),
         );

@@ -70,6 +70,8 @@ const SECTIONS: &[Kind] = &[
     Kind::VarExternal,
 ];
 
+const QUALIFIERS: &[Kind] = &[Kind::Constant, Kind::Retain, Kind::NonRetain, Kind::Persistent];
+
 const OPENERS: &[Kind] = &[Kind::While, Kind::Repeat, Kind::Case, Kind::For, Kind::If, Kind::Elsif, Kind::Return];
 
 const ITEMS: &[Kind] =
@@ -154,6 +156,16 @@ pub fn misspelt_item(input: &mut In<'_, '_, '_>) -> Option<Kind> {
     }
     let span = input.here();
     nearest_of(input.text(span), ITEMS)
+}
+
+/// `RETIAN` after `VAR`, on its line.
+pub fn misspelt_qualifier(input: &mut In<'_, '_, '_>) -> Option<Kind> {
+    let follows = matches!(input.kind_ahead(1), Kind::Name | Kind::Constant | Kind::Retain | Kind::Persistent);
+    if input.kind() != Kind::Name || !follows || input.on_new_line() {
+        return None;
+    }
+    let span = input.here();
+    nearest_of(input.text(span), QUALIFIERS)
 }
 
 /// Whether a name that is alone is a misspelt keyword.

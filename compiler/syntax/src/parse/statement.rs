@@ -105,6 +105,12 @@ fn return_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>>
     let word = input.take();
     if !recovery::begins_statement(input) && input.kind() != Kind::Semicolon {
         let is_condition = input.kind() == Kind::OpenParen;
+        if is_condition && input.kind_ahead(1) == Kind::CloseParen {
+            let parentheses = input.take().to(input.take());
+            input.report(diagnostics::return_called(parentheses));
+            end(input)?;
+            return Ok(StatementKind::Return);
+        }
         let value = expression(input)?;
         if is_condition {
             end(input)?;
@@ -295,6 +301,7 @@ fn split_assign<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
 /// `a S= b`, `a R= b`, `a S= b R= c`, `a REF= b`
 fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
     if !is_latch(input, 0) {
+        foreign_statement::split_latch(input)?;
         return match target.kind {
             ExprKind::Call(..) => Ok(StatementKind::Expr(target)),
             _ => without_effect(input, target),

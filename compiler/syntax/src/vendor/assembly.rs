@@ -43,6 +43,8 @@ pub enum Trouble {
     Odd,
     /// A comment that takes in what follows.
     Open,
+    /// A text that ends with the word that its file stands for.
+    SecondEnd,
     /// A diagram that other versions of its editor execute in another order.
     OtherOrder,
 }

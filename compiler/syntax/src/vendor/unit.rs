@@ -95,7 +95,23 @@ impl<'t> Unit<'t> {
             What::Property => "END_PROPERTY",
             What::Unit => end(file, &self.declaration),
         };
-        out.write(&format!("\n{end}\n"), &self.end);
+        match self.own_end(file, end) {
+            Some(place) => out.problem(Trouble::SecondEnd, format!("`{end}` is not a part of this text"), &place),
+            None => out.write(&format!("\n{end}\n"), &self.end),
+        }
+    }
+
+    /// Where the body itself has the word that ends it, as its last.
+    fn own_end(&self, file: &str, end: &str) -> Option<Range<usize>> {
+        let Body::Text(chunks) = &self.body else { return None };
+        let [.., Chunk { place, says: Says::Itself }] = chunks.as_slice() else { return None };
+        let text = file[place.clone()].trim_end_matches(|it: char| it.is_whitespace() || it == ';');
+        let start = text.len().checked_sub(end.len()).filter(|_| !end.is_empty())?;
+        let word = text.get(start..).filter(|it| it.eq_ignore_ascii_case(end))?;
+        let line = text[..start].rsplit('\n').next()?;
+        let begins = !line.ends_with(|it: char| it.is_ascii_alphanumeric() || it == '_');
+        let start = place.start + start;
+        (begins && !line.contains("//")).then(|| start..start + word.len())
     }
 }
 

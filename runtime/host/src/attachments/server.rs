@@ -201,7 +201,7 @@ fn serve(shared: &Shared, number: u64, mut stream: TcpStream) -> io::Result<()> 
     }
 }
 
-/// Fills the buffer, and says when that was. A frame that has begun has to end soon; before one, there is no hurry.
+/// Fills the buffer, and says when that was. A frame that has begun has to end soon; before one, it may wait.
 fn read(shared: &Shared, stream: &mut TcpStream, buffer: &mut [u8], began: Option<Instant>) -> io::Result<Instant> {
     let mut filled = 0;
     while filled < buffer.len() {

@@ -64,7 +64,7 @@ pub struct Options {
     pub pacing: Pacing,
     /// In real time, what inputs and outputs are connected with.
     pub io: Io,
-    /// The machine is told of each scan, and may end the run.
+    /// The machine learns of each scan, and may end the run.
     pub debugged: bool,
     /// Prints nothing but errors and the trace.
     pub quiet: bool,

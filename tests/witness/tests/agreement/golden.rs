@@ -56,7 +56,7 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
         return Ok(Verdict::Rejected("a counter that stops at PV".to_owned()));
     }
     if settings.options.codesys_lreal_literals {
-        return Ok(Verdict::Rejected("a number that is an LREAL beside a REAL".to_owned()));
+        return Ok(Verdict::Rejected("a number that is an LREAL next to a REAL".to_owned()));
     }
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
     let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "MID(", "DELETE(", "INSERT(", "LIMIT("];

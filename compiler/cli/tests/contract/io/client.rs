@@ -57,7 +57,7 @@ struct Server {
 }
 
 impl Server {
-    /// `None` where there is no pymodbus, and that is no mistake.
+    /// `None` where pymodbus is not installed, which is allowed.
     fn start(port: u16) -> Option<Self> {
         let python = |script: &str| {
             let mut command = Command::new("/usr/bin/python3");
@@ -182,7 +182,7 @@ fn a_server_that_does_not_answer_ends_a_run_that_needs_it() {
         format!("[[modbus]]\n{}\n[modbus.map]\nspeed = \"holding-register 3\"\n", settings("hold")),
     );
     has(&folder.staunch(&format!("{run} --scans 100")).err(0), &["inputs stay as they are"]);
-    // On the virtual clock there is no world outside.
+    // The virtual clock reads and writes nothing outside of the program.
     assert!(!folder.staunch("run main.st --scans 2").err(0).contains("pump"));
 }
 

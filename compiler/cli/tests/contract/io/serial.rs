@@ -74,7 +74,7 @@ impl Line {
         let end = |path: &Path| format!("PTY,raw,echo=0,link={}", path.display());
         let socat = Command::new("socat").args(paths.each_ref().map(|it| end(it))).spawn().unwrap();
         let mut found = Vec::new();
-        until("the line is there", || {
+        until("the line exists", || {
             found = paths.iter().filter_map(|it| opened(it)).collect();
             found.len() == 2
         });
@@ -225,7 +225,7 @@ fn units_on_one_line_are_read_and_written() {
     assert_eq!((units.ask("3 get co 1")[0], units.ask("3 get hr 30")[0], units.ask("5 get hr 30")[0]), (0, 0, 0));
 }
 
-/// One unit does not answer: the other one is read and written all the same.
+/// One unit does not answer: the other one is still read and written.
 #[test]
 fn a_unit_that_is_silent_leaves_the_line_to_others() {
     let folder = built("io_serial_silent", "1s");

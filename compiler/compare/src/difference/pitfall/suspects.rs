@@ -88,7 +88,7 @@ fn of_several(again: &Again, relevant: &Relevant, all: &[Suspect]) -> Option<usi
     needed.first().copied()
 }
 
-/// The blocks and variables that one side alone has kept, and the counters and other blocks that part by themselves, of those that
+/// The blocks and variables that one side alone has kept, and the counters and other blocks that differ by themselves, of those that
 /// decide the differences.
 fn suspects(pair: &Pair, rows: &[Row], habits: &[Habits], relevant: &Relevant) -> Vec<Suspect> {
     let events = || (0..rows.len()).filter(|it| rows[*it].event.is_some());

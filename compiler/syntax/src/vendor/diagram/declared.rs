@@ -88,7 +88,7 @@ impl Declared {
         })
     }
 
-    /// Whether a POU has a variable of this name.
+    /// Whether a POU has a variable with this name.
     pub fn has(&self, pou: &str, name: &str) -> bool {
         let found = self.units.get(&pou.to_ascii_uppercase());
         found.is_some_and(|it| it.variables.contains_key(&name.to_ascii_uppercase()))

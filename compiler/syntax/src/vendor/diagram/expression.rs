@@ -18,7 +18,7 @@ pub struct Expression {
 #[derive(Clone, Debug)]
 enum Form {
     True,
-    /// As it is written; one that has operators needs parentheses beside others.
+    /// As it is written; one that has operators needs parentheses next to others.
     Written {
         chunks: Vec<Chunk>,
         is_simple: bool,

@@ -54,7 +54,7 @@ fn is_block(diagram: &Diagram, at: usize) -> bool {
     matches!(diagram.nodes[at].kind, Kind::Block { .. })
 }
 
-/// What is within ten pixels is in one row, so that this is no order of all pairs: elements go in one by one, each to where halving
+/// Elements within ten pixels are in one row, so that this does not order all pairs: elements go in one by one, each to where halving
 /// leads.
 fn sorted(diagram: &Diagram, all: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut sorted: Vec<usize> = Vec::new();

@@ -376,7 +376,7 @@ impl<'w> Writer<'w> {
                 let is_its = |it: &&Node| matches!(&it.kind, Kind::Connector(other) if other == name);
                 let mut found = self.diagram.nodes.iter().filter(is_its);
                 let connector = found.next().filter(|_| found.next().is_none());
-                let message = || format!("the continuation `{name}` has no connector of this name, or several");
+                let message = || format!("the continuation `{name}` needs exactly one connector `{name}`");
                 let connector = connector.ok_or_else(|| refuse(node, Trouble::Odd, message()))?;
                 self.enter(at)?;
                 let value = self.connector(name, connector, asked)?;
@@ -476,7 +476,7 @@ impl<'w> Writer<'w> {
                 Kind::Block { ty, instance: None }
                     if !is_function(&ty.text) && !self.context.has_function(&ty.text) =>
                 {
-                    format!("`{}` is no standard function, and the project does not declare it", ty.text)
+                    format!("`{}` is not a standard function, and the project does not declare it", ty.text)
                 }
                 _ => format!("nothing that is wired to {} says what type `{pin}` is of", node.shown(self.file)),
             };

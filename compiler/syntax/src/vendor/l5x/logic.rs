@@ -45,7 +45,7 @@ impl Logic<'_> {
 }
 
 impl Logic<'_> {
-    /// Whether an operand is a tag that is no array.
+    /// Whether an operand is a tag that is not an array.
     pub fn is_single(&self, operand: &str) -> bool {
         let name = key(operand);
         let is = |it: &Scope| it.types.contains_key(&name) && !it.arrays.contains(&name);

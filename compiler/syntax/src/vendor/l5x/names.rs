@@ -35,7 +35,7 @@ pub enum Shown {
         preset: i32,
         accum: i32,
     },
-    /// Rungs differ: there are several of this name.
+    /// Rungs differ: several have this name.
     Several,
 }
 

@@ -29,7 +29,7 @@ pub enum Transition {
     Other(&'static str),
 }
 
-/// What a POU has beside its chart.
+/// What a POU has in addition to its chart.
 pub struct Parts<'p> {
     pub transitions: &'p FxHashMap<String, Transition>,
     /// Those with text are taken out where a step names them.

@@ -169,7 +169,7 @@ impl Expected<'_> {
             // A write is answered by its place, and its value or count.
             _ => *body == self.request[1..5],
         };
-        if is_expected { Ok(length) } else { Err(unanswered("the answer is no answer to the request")) }
+        if is_expected { Ok(length) } else { Err(unanswered("the answer does not fit the request")) }
     }
 
     /// The unit whose frame this is, if it is another one.
@@ -177,7 +177,7 @@ impl Expected<'_> {
         match is_whole(frame) {
             true if frame[0] != self.unit => Ok(frame[0]),
             true => Err(unanswered(format!("the answer is one of function {}, and not {}", frame[1], self.request[0]))),
-            false => Err(damaged("there are bytes on the line that are no frame")),
+            false => Err(damaged("bytes on the line do not form a frame")),
         }
     }
 }

@@ -57,7 +57,7 @@ impl Tcp {
         self.fill(0, HEADER + 1, deadline)?;
         let length = usize::from(u16::from_be_bytes([self.frame[4], self.frame[5]]));
         if self.frame[..4] != head || self.frame[HEADER - 1] != unit || !(3..=MOST - HEADER + 1).contains(&length) {
-            return Err(Trouble::Failed("the answer is no answer to the request".to_owned()));
+            return Err(Trouble::Failed("the answer does not fit the request".to_owned()));
         }
         let end = HEADER - 1 + length;
         self.fill(HEADER + 1, end, deadline)?;

@@ -9,7 +9,7 @@ pub(super) enum Trouble {
     Closed,
     /// Nothing further is to be expected of the connection.
     Failed(String),
-    /// There was no answer to the request; the connection is as good as before.
+    /// The request was not answered; the connection is as good as before.
     Unanswered(String),
     /// What was received is not as it was sent. The connection is as good as before.
     Damaged(String),

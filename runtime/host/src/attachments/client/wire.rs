@@ -100,7 +100,7 @@ impl Wire {
         match self.answer.as_slice() {
             [it, rest @ ..] if *it == code => Ok(rest),
             [it, reason, ..] if *it == code | function::WRONG => Err(Trouble::Refused(refusal(request, *reason))),
-            _ => Err(Trouble::Failed("the answer is no answer to the request".to_owned())),
+            _ => Err(Trouble::Failed("the answer does not fit the request".to_owned())),
         }
     }
 }

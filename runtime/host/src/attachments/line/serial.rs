@@ -25,7 +25,7 @@ const SET_SETTINGS: u32 = 0x402C_542B;
 const DROP: u32 = 0x540B;
 const RECEIVED: c_int = 0;
 
-/// A break is no byte.
+/// A break is not a byte.
 const IGNORE_BREAK: u32 = 1;
 /// A byte with a wrong parity is read as 0; the CRC is then wrong.
 const CHECK_PARITY: u32 = 0o20;

@@ -68,11 +68,11 @@ fn wrong_answers_are_no_values() {
         serve(&mut line, reply);
         serve(&mut line, &right());
     }
-    until("the value is there", || {
+    until("the value arrives", || {
         serve(&mut line, &right());
         client.words(INPUT, 10, 1) == [1234]
     });
-    assert!(!client.bit(COILS, 72), "a value that was no answer");
+    assert!(!client.bit(COILS, 72), "a value that nobody sent as an answer");
     plant.signal("-TERM");
     let said = plant.ended(0);
     has(&said, &["no answer in time, but one of unit 4"]);

@@ -35,7 +35,7 @@ impl Writer<'_> {
         !is_contact && it.operands.iter().any(|part| may_fault(self.operand_text(part)))
     }
 
-    /// An operand where others are beside it.
+    /// An operand with others next to it.
     pub fn operand(&self, part: &Range<usize>) -> Vec<Chunk> {
         let words = self.text.part(part);
         if !self.operand_text(part).starts_with('-') {
@@ -89,7 +89,7 @@ impl Writer<'_> {
     }
 }
 
-/// Whether an operand has an index that is no number, or divides.
+/// Whether an operand has an index that is not a number, or divides.
 fn may_fault(operand: &str) -> bool {
     let mut indices = operand.split('[').skip(1).map(|it| it.split(']').next().unwrap_or_default());
     let is_number = |it: &str| it.bytes().all(|it| it.is_ascii_digit() || it == b',' || it == b' ');

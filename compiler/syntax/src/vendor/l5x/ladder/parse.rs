@@ -62,7 +62,7 @@ struct Parser<'t> {
 }
 
 impl Parser<'_> {
-    /// The next byte that is no space.
+    /// The next byte that is not a space.
     fn next(&mut self) -> Option<u8> {
         let rest = &self.text[self.at..];
         self.at += rest.len() - rest.trim_start().len();

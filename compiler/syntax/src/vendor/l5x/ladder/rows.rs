@@ -10,7 +10,7 @@ use super::super::names::key;
 pub enum Does {
     /// The rung continues where this is true.
     Tests(&'static str),
-    /// As before, but not looked at where the rung is false already: an index out of range is no fault then (1756-PM004, p. 52).
+    /// As before, but not looked at where the rung is false already: an index out of range is not a fault then (1756-PM004, p. 52).
     Compares(&'static str),
     /// Executed in each scan, whatever the rung is.
     Always(&'static str),

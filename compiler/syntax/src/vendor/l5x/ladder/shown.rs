@@ -28,7 +28,7 @@ pub fn shown(file: &str) -> FxHashMap<String, (Shown, Range<usize>)> {
     found
 }
 
-/// The tag, and the numbers beside it; none where it shows none.
+/// The tag, and the numbers next to it; none where it shows none.
 fn operands(text: &str) -> Option<(&str, Shown)> {
     let mut parts = text[..text.find(')')?].split(',').map(str::trim);
     let (tag, preset, accum) = (parts.next()?, parts.next()?, parts.next()?);

@@ -310,7 +310,7 @@ impl Writer<'_> {
         name
     }
 
-    /// Where the condition is true, leaves the part by these statements.
+    /// These statements leave what is around them, where the condition is true.
     pub fn leave(&mut self, condition: &Condition, statements: Vec<Chunk>, place: &Range<usize>) {
         self.leaves |= matches!(condition, Condition::True);
         self.where_true(condition, statements, place);

@@ -138,7 +138,7 @@ impl<'t> Rung<'t> {
         wires
     }
 
-    /// The output that a wire comes from: the one that it names, else the one that the rung goes on from.
+    /// The output that a wire comes from: the one that it names, else the one that the rung continues from.
     fn output_of(from: &Element<'t>, line: &Line<'t>, out: &mut Assembly) -> Option<String> {
         let is_named = from.pins("outputHandles", out).contains(&line.from_pin);
         let pin = if is_named { Some(line.from_pin) } else { from.connector("outputConnector", out) };

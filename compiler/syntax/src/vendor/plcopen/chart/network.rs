@@ -49,7 +49,7 @@ impl Networks {
             match &element.kind {
                 Kind::Step { .. } => finder.step(at)?,
                 Kind::Transition { .. } => finder.transition(at)?,
-                // One that is drawn beside the chart does nothing.
+                // One that is not connected to the chart does nothing.
                 Kind::Actions(_) if element.inputs.iter().all(Vec::is_empty) => {}
                 Kind::Actions(_) => {
                     let step = finder.step_of(element)?;
@@ -97,7 +97,7 @@ impl<'c> Finder<'c> {
         self.by_id.get(wire.from.as_str()).copied().ok_or_else(|| Refusal {
             place: wire.place.clone(),
             trouble: Trouble::Odd,
-            message: format!("this connection comes from element {}, which is no part of the chart", wire.from),
+            message: format!("this connection comes from element {}, which is not in the chart", wire.from),
         })
     }
 

@@ -1,0 +1,91 @@
+//! Operands as other languages write them: casts, functions without their parentheses, tags of Logix's modules.
+
+use crate::{
+    ast::{Expr, ExprKind},
+    diagnostic::{Code, Diagnostic},
+    lex::Kind,
+    source::Span,
+};
+
+use super::{
+    expression::postfix,
+    foreign_statement::type_of_ours,
+    parser::{In, Parsed, TokenReader},
+};
+
+/// Functions of one operand that are written like operators elsewhere.
+const FUNCTIONS: [&str; 10] = ["ADR", "REF", "SIZEOF", "ABS", "SQRT", "LN", "LOG", "EXP", "LEN", "TRUNC"];
+
+/// `(REAL) n`, after the `(REAL)`: the operand is what follows.
+pub fn cast<'s>(input: &mut In<'_, '_, 's>, ty: &Expr<'s>) -> Option<Parsed<Expr<'s>>> {
+    let ExprKind::Name(name) = &ty.kind else { return None };
+    let follows = matches!(input.kind(), Kind::Name | Kind::Integer | Kind::Real | Kind::OpenParen);
+    let ty = type_of_ours(name.text).filter(|_| follows && !input.on_new_line())?;
+    let opened = Span { start: name.span.start - 1, ..name.span };
+    Some(postfix(input).map(|operand| {
+        let whole = opened.to(operand.span);
+        let inner = if let ExprKind::Paren(inner) = &operand.kind { inner.span } else { operand.span };
+        let meant = format!("TO_{ty}({})", input.text(inner));
+        input.report(
+            Diagnostic::new(Code::E0010, whole, "Structured Text converts a value with a function, not with a cast")
+                .label(format!("expected `{meant}`"))
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        Expr { kind: ExprKind::Error(Vec::new()), span: whole }
+    }))
+}
+
+/// `ADR n`: a function and its one operand, which have no parentheses.
+pub fn without_parentheses<'s>(input: &mut In<'_, '_, 's>) -> Option<Parsed<Expr<'s>>> {
+    let at = input.number();
+    let (name, next) = (input.here(), input.state().place(at + 1));
+    let text = input.text(name);
+    let is_conversion = || text.to_ascii_uppercase().contains("TO_");
+    let is_function = FUNCTIONS.iter().any(|it| text.eq_ignore_ascii_case(it)) || is_conversion();
+    let operand = matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::Real);
+    let is_joined = !input.state().breaks(name.end, next.start);
+    if !operand || !is_function || !is_joined || is_infix(input) {
+        return None;
+    }
+    input.take();
+    Some(postfix(input).map(|operand| {
+        let (whole, meant) = (name.to(operand.span), format!("{text}({})", input.text(operand.span)));
+        input.report(
+            Diagnostic::new(Code::E0001, whole, format!("`{text}` takes its argument in parentheses"))
+                .label(format!("expected `{meant}`"))
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        Expr { kind: ExprKind::Error(Vec::new()), span: whole }
+    }))
+}
+
+/// Whether the second name is nearly an operator: `len ADN b`.
+fn is_infix(input: &mut In<'_, '_, '_>) -> bool {
+    input.kind_ahead(1) == Kind::Name
+        && matches!(input.kind_ahead(2), Kind::Name | Kind::Integer | Kind::Real | Kind::Not | Kind::Equal)
+}
+
+/// `Local:1:I`, the tag of a module of Logix: taken, and refused.
+pub fn module_tag(input: &mut In<'_, '_, '_>) -> Option<Span> {
+    let kinds = [Kind::Name, Kind::Colon, Kind::Integer, Kind::Colon, Kind::Name];
+    let at = input.number();
+    let is_shape = (0..kinds.len()).all(|it| input.kind_ahead(it) == kinds[it]);
+    let state = input.state();
+    let is_joined = || (at..at + 4).all(|it| state.place(it).end == state.place(it + 1).start);
+    if !is_shape || !is_joined() {
+        return None;
+    }
+    let whole = input.here().to(input.state().place(at + 4));
+    for _ in kinds {
+        input.take();
+    }
+    let text = input.text(whole);
+    input.report(
+        Diagnostic::new(Code::E0020, whole, format!("`{text}` is the tag of a module of Logix"))
+            .label("a module's tags are known only in an L5X project")
+            .help("compile the project's L5X file, or declare a variable and use it in the tag's place"),
+    );
+    Some(whole)
+}
