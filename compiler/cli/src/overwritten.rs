@@ -1,6 +1,5 @@
 //! W0522: a column of a stimulus for a variable that the program overwrites before it reads it.
 
-use crate::machine;
 use crate::session::Session;
 use staunch_frontend::{Code, Diagnostic};
 use staunch_host::{Map, Place, csv_cells, place_of, same_name};
@@ -15,7 +14,7 @@ pub fn lint(session: &Session, program: &Program, stimulus: &Path) -> Result<boo
     if found.is_empty() {
         return Ok(true);
     }
-    let map = machine::map(program)?;
+    let map = staunch_machine::map(program)?;
     let running: Vec<usize> = (0..map.instances.len()).collect();
     // Of a trace, only the inputs are written.
     let is_trace = columns.get(1).is_some_and(|it| same_name(it, "time_ms"));

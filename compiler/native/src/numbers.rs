@@ -8,6 +8,7 @@
 //! A variable is forgotten with each statement that may write it. A call may write any.
 
 use crate::function::Function;
+use crate::target::Aim;
 use staunch_ir::alias::{Alias, Frame, alias};
 use staunch_ir::interval::Range;
 use staunch_ir::loops::running;
@@ -58,6 +59,10 @@ impl Function<'_, '_> {
         }
         if let (StatementKind::Assign { target, .. }, Some(range)) = (&statement.kind, assigned) {
             self.note_range(target, range);
+        }
+        // A debugger writes variables between statements.
+        if self.module.aim == Aim::Debugging {
+            self.seen.forget_variables();
         }
     }
 
