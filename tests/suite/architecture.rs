@@ -47,7 +47,8 @@ const KEPT_FROM_BUILD: [&str; 4] = ["cranelift", "cc", "cmake", "stacker"];
 const UNSAFE: &[&str] = &[
     "runtime/abi/",
     "runtime/host/src/allocations.rs",
-    "runtime/host/src/attachments/client/serial.rs",
+    "runtime/host/src/attachments/gpio/chip.rs",
+    "runtime/host/src/attachments/line/serial.rs",
     "runtime/host/src/attachments/mapping.rs",
     "runtime/host/src/compiled.rs",
     "runtime/host/src/retain/lock.rs",

@@ -100,7 +100,7 @@ pub fn check_remotes(all: &[Remote], map: &Map) -> Result<(), (usize, Mistake)> 
 }
 
 /// Where a server's inputs are in the state, if there is nothing wrong with it.
-pub(in crate::attachments) fn input_places(remote: &Remote, map: &Map, points: &Points) -> Vec<(usize, Option<u8>)> {
+pub(crate) fn input_places(remote: &Remote, map: &Map, points: &Points) -> Vec<(usize, Option<u8>)> {
     let plan = Plan::of(remote, map, points).unwrap_or_default();
     plan.named_inputs.into_iter().map(|(_, offset, bit)| (offset, bit)).collect()
 }
@@ -164,7 +164,7 @@ fn start(place: &str) -> Result<Start, String> {
 }
 
 /// The values of a variable, of an array one after the other.
-pub(in crate::attachments) fn values(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
+pub(crate) fn values(map: &Map, points: &Points, name: &str) -> Result<Vec<Point>, String> {
     let all: Vec<usize> = (0..map.instances.len()).collect();
     let place = path::resolve(map, &all, name)?;
     let end = place.offset + map.size_of(place.ty).max(1);

@@ -5,18 +5,18 @@ use crate::remote::{Line, Parity};
 use std::time::Duration;
 
 /// Bytes of a frame.
-pub(in crate::attachments) const MOST: usize = 256;
+pub(crate) const MOST: usize = 256;
 /// A unit, a function and a CRC.
-pub(in crate::attachments) const LEAST: usize = 4;
+pub(crate) const LEAST: usize = 4;
 /// Silence that ends a frame of which more is expected. 3.5 characters are less, but an adapter at USB hands bytes over every 16 ms, and a thread
 /// may have to wait for a processor.
-pub(in crate::attachments) const PAUSE: Duration = Duration::from_millis(50);
+pub(crate) const PAUSE: Duration = Duration::from_millis(50);
 /// Above 19200 bits a second, the specification has this silence between frames, and not that of 3.5 characters (2.5.1.1).
-pub(in crate::attachments) const LEAST_SILENCE: Duration = Duration::from_micros(1750);
+pub(crate) const LEAST_SILENCE: Duration = Duration::from_micros(1750);
 
 /// Times of a line.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::attachments) struct Timing {
+pub(crate) struct Timing {
     /// How long a byte is on the line.
     pub character: Duration,
     /// Between two frames.
@@ -37,19 +37,19 @@ impl Timing {
 }
 
 /// Ends a frame with its CRC.
-pub(in crate::attachments) fn close(frame: &mut Vec<u8>) {
+pub(crate) fn close(frame: &mut Vec<u8>) {
     let crc = crc(frame);
     frame.extend(crc.to_le_bytes());
 }
 
 /// Whether it is a frame with a right CRC.
-pub(in crate::attachments) fn is_whole(frame: &[u8]) -> bool {
+pub(crate) fn is_whole(frame: &[u8]) -> bool {
     // The CRC of a frame and its own CRC is 0.
     (LEAST..=MOST).contains(&frame.len()) && crc(frame) == 0
 }
 
 /// Where the first frame with a right CRC ends that the bytes begin with.
-pub(in crate::attachments) fn first_whole(bytes: &[u8]) -> Option<usize> {
+pub(crate) fn first_whole(bytes: &[u8]) -> Option<usize> {
     let mut crc = START;
     let ends = bytes.iter().take(MOST).zip(1..).filter_map(|(byte, end)| {
         crc = added(crc, *byte);

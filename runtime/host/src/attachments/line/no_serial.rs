@@ -7,7 +7,7 @@ use std::time::Instant;
 
 /// One that there is none of.
 #[derive(Debug)]
-pub(in crate::attachments) enum Serial {}
+pub(crate) enum Serial {}
 
 impl Serial {
     pub fn open(_: &Line) -> io::Result<Self> {

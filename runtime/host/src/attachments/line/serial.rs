@@ -78,7 +78,7 @@ unsafe extern "C" {
 }
 
 #[derive(Debug)]
-pub(in crate::attachments) struct Serial(File);
+pub(crate) struct Serial(File);
 
 impl Serial {
     /// Opens the port, which this process alone then has locked.
