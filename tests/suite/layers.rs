@@ -40,7 +40,6 @@ const CIRCLES: [(&str, &[&[&str]]); 8] = [
         SYNTAX,
         &[
             &["diagnostic", "diagnostic::codes", "diagnostic::levels", "diagnostic::render"],
-            &["lex", "lex::comment", "lex::kind"],
             &["parse::diagnostics", "parse::diagnostics::declared"],
             &["parse::doc", "parse::parser"],
         ],

@@ -15,6 +15,7 @@ mod misspelt;
 
 mod block_ends;
 mod foreign_block;
+mod foreign_expression;
 mod foreign_reader;
 mod foreign_statement;
 mod foreign_syntax;
@@ -23,7 +24,6 @@ mod recovery;
 mod unsupported;
 
 mod expression;
-mod foreign_expression;
 mod literal;
 
 mod foreign_types;

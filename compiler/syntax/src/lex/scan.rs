@@ -1,7 +1,8 @@
 //! The tokens of a text, one after the other, each the longest that begins at its place. Written by hand: a generated lexer
 //! costs each user's build script a quarter of its time.
 
-use super::{Kind, comment};
+use super::comment;
+use super::kind::Kind;
 use core::ops::Range;
 
 /// Reads a text from its start to its end.

@@ -522,10 +522,12 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     let span = input.here();
     let kind = match input.kind() {
         Kind::Name if foreign_expression::module_tag(input).is_some() => ExprKind::Error(Vec::new()),
-        Kind::Name => match foreign_expression::without_parentheses(input) {
-            Some(operand) => return operand,
-            None => ExprKind::Name(input.name()?),
-        },
+        Kind::Name if foreign_expression::lacks_parentheses(input) => {
+            input.take();
+            let operand = postfix(input)?;
+            return Ok(foreign_expression::without_parentheses(input, span, &operand));
+        }
+        Kind::Name => ExprKind::Name(input.name()?),
         // The functions of these names: `AND(a, b, c)`.
         Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not if input.kind_ahead(1) == Kind::OpenParen => {
             input.take();
@@ -560,8 +562,9 @@ fn parenthesis<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     if input.eat(Kind::CloseParen).is_none() {
         return Err(input.problem(Expected::Closing(Kind::CloseParen, opened)));
     }
-    if let Some(cast) = foreign_expression::cast(input, &inner) {
-        return cast;
+    if let Some(ty) = foreign_expression::cast_type(input, &inner) {
+        let operand = postfix(input)?;
+        return Ok(foreign_expression::cast(input, start, ty, &operand));
     }
     let height = input.state().height;
     input.grow(height)?;

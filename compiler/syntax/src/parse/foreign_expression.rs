@@ -8,57 +8,56 @@ use crate::{
 };
 
 use super::{
-    expression::postfix,
-    foreign_statement::type_of_ours,
-    parser::{In, Parsed, TokenReader},
+    foreign_reader::type_of_ours,
+    parser::{In, TokenReader},
 };
 
 /// Functions of one operand that are written like operators elsewhere.
 const FUNCTIONS: [&str; 10] = ["ADR", "REF", "SIZEOF", "ABS", "SQRT", "LN", "LOG", "EXP", "LEN", "TRUNC"];
 
-/// `(REAL) n`, after the `(REAL)`: the operand is what follows.
-pub fn cast<'s>(input: &mut In<'_, '_, 's>, ty: &Expr<'s>) -> Option<Parsed<Expr<'s>>> {
+/// The type that `(REAL) n` is cast to, after the `(REAL)`: its operand follows.
+pub fn cast_type(input: &mut In<'_, '_, '_>, ty: &Expr<'_>) -> Option<&'static str> {
     let ExprKind::Name(name) = &ty.kind else { return None };
     let follows = matches!(input.kind(), Kind::Name | Kind::Integer | Kind::Real | Kind::OpenParen);
-    let ty = type_of_ours(name.text).filter(|_| follows && !input.on_new_line())?;
-    let opened = Span { start: name.span.start - 1, ..name.span };
-    Some(postfix(input).map(|operand| {
-        let whole = opened.to(operand.span);
-        let inner = if let ExprKind::Paren(inner) = &operand.kind { inner.span } else { operand.span };
-        let meant = format!("TO_{ty}({})", input.text(inner));
-        input.report(
-            Diagnostic::new(Code::E0010, whole, "Structured Text converts a value with a function, not with a cast")
-                .label(format!("expected `{meant}`"))
-                .help(format!("write `{meant}`"))
-                .fix(whole, meant),
-        );
-        Expr { kind: ExprKind::Error(Vec::new()), span: whole }
-    }))
+    type_of_ours(name.text).filter(|_| follows && !input.on_new_line())
 }
 
-/// `ADR n`: a function and its one operand, which have no parentheses.
-pub fn without_parentheses<'s>(input: &mut In<'_, '_, 's>) -> Option<Parsed<Expr<'s>>> {
+/// `(REAL) n`, from its first parenthesis on.
+pub fn cast<'s>(input: &mut In<'_, '_, 's>, opened: Span, ty: &str, operand: &Expr<'s>) -> Expr<'s> {
+    let whole = opened.to(operand.span);
+    let inner = if let ExprKind::Paren(inner) = &operand.kind { inner.span } else { operand.span };
+    let meant = format!("TO_{ty}({})", input.text(inner));
+    input.report(
+        Diagnostic::new(Code::E0010, whole, "Structured Text converts a value with a function, not with a cast")
+            .label(format!("expected `{meant}`"))
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+    Expr { kind: ExprKind::Error(Vec::new()), span: whole }
+}
+
+/// Whether `ADR n` is here: a function and its one operand, which have no parentheses.
+pub fn lacks_parentheses(input: &mut In<'_, '_, '_>) -> bool {
     let at = input.number();
     let (name, next) = (input.here(), input.state().place(at + 1));
     let text = input.text(name);
     let is_conversion = || text.to_ascii_uppercase().contains("TO_");
     let is_function = FUNCTIONS.iter().any(|it| text.eq_ignore_ascii_case(it)) || is_conversion();
     let operand = matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::Real);
-    let is_joined = !input.state().breaks(name.end, next.start);
-    if !operand || !is_function || !is_joined || is_infix(input) {
-        return None;
-    }
-    input.take();
-    Some(postfix(input).map(|operand| {
-        let (whole, meant) = (name.to(operand.span), format!("{text}({})", input.text(operand.span)));
-        input.report(
-            Diagnostic::new(Code::E0001, whole, format!("`{text}` takes its argument in parentheses"))
-                .label(format!("expected `{meant}`"))
-                .help(format!("write `{meant}`"))
-                .fix(whole, meant),
-        );
-        Expr { kind: ExprKind::Error(Vec::new()), span: whole }
-    }))
+    operand && is_function && !input.state().breaks(name.end, next.start) && !is_infix(input)
+}
+
+/// `ADR n`, with its operand read.
+pub fn without_parentheses<'s>(input: &mut In<'_, '_, 's>, name: Span, operand: &Expr<'s>) -> Expr<'s> {
+    let text = input.text(name);
+    let (whole, meant) = (name.to(operand.span), format!("{text}({})", input.text(operand.span)));
+    input.report(
+        Diagnostic::new(Code::E0001, whole, format!("`{text}` takes its argument in parentheses"))
+            .label(format!("expected `{meant}`"))
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+    Expr { kind: ExprKind::Error(Vec::new()), span: whole }
 }
 
 /// Whether the second name is nearly an operator: `len ADN b`.

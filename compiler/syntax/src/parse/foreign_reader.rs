@@ -137,3 +137,25 @@ pub fn skip_further_in(input: &mut In<'_, '_, '_>, word: Span, ahead: usize) -> 
         input.take();
     }
 }
+
+/// The type here that a word of another language is.
+pub fn type_of_ours(word: &str) -> Option<&'static str> {
+    let types = [
+        ("int", "DINT"),
+        ("integer", "DINT"),
+        ("long", "DINT"),
+        ("short", "INT"),
+        ("unsigned", "UDINT"),
+        ("bool", "BOOL"),
+        ("boolean", "BOOL"),
+        ("float", "REAL"),
+        ("single", "REAL"),
+        ("double", "LREAL"),
+        ("char", "BYTE"),
+        ("string", "STRING"),
+    ];
+    let found = types.iter().find(|it| word.eq_ignore_ascii_case(it.0));
+    let same = || staunch_ir::Elementary::named(word).map(|it| it.name());
+    // `INT x` is said as ours: nobody means another type by it.
+    same().or_else(|| found.map(|it| it.1))
+}

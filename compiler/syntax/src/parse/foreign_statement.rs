@@ -11,7 +11,7 @@ use super::{
     expression::{is_latch, pointed},
     foreign_reader::{
         behind_parentheses, has_braces, is_word, refuse, skip_further_in, skip_line, skip_rest, skip_tokens,
-        starts_line,
+        starts_line, type_of_ours,
     },
     foreign_syntax::joins_name,
     parser::{In, Parsed, Problem, TokenReader},
@@ -60,28 +60,6 @@ fn two_names(input: &mut In<'_, '_, '_>) -> bool {
     input.take();
     skip_rest(input);
     true
-}
-
-/// The type here that a word of another language is.
-pub fn type_of_ours(word: &str) -> Option<&'static str> {
-    let types = [
-        ("int", "DINT"),
-        ("integer", "DINT"),
-        ("long", "DINT"),
-        ("short", "INT"),
-        ("unsigned", "UDINT"),
-        ("bool", "BOOL"),
-        ("boolean", "BOOL"),
-        ("float", "REAL"),
-        ("single", "REAL"),
-        ("double", "LREAL"),
-        ("char", "BYTE"),
-        ("string", "STRING"),
-    ];
-    let found = types.iter().find(|it| word.eq_ignore_ascii_case(it.0));
-    let same = || staunch_ir::Elementary::named(word).map(|it| it.name());
-    // `INT x` is said as ours: nobody means another type by it.
-    same().or_else(|| found.map(|it| it.1))
 }
 
 /// A declaration as other languages write one, among statements. Its name is known from then on.
