@@ -63,7 +63,7 @@ fn json_shows_places_of_vendors_files_as_people_see_them() {
     let diagnostic: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
     let rendered = diagnostic["rendered"].as_str().unwrap();
     assert!(err.starts_with(rendered), "{err}\nand\n{rendered}");
-    has(rendered, &["MAIN.TcPOU:13:", "did you mean `pulse`?"]);
+    has(rendered, &["MAIN.TcPOU:14:", "did you mean `pulse`?"]);
 }
 
 #[test]
