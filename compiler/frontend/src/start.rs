@@ -73,7 +73,7 @@ pub(crate) fn expand(files: &mut [File<'_>], binds: &dyn Fn(Span) -> bool) {
     let routines = || files.iter().flat_map(|it| &it.items).filter_map(pou).flat_map(|it| &it.routines);
     let asks = |it: &Pou<'_>| is_initial(it.name) || is_after(it);
     let Some(at) = routines().find(|it| asks(it)).map(|it| it.name.span).or(first) else { return };
-    let tells = routines().filter(|it| is_initial(it.name)).any(|it| mentions(&it.body, ASKED));
+    let is_asked = routines().filter(|it| is_initial(it.name)).any(|it| mentions(&it.body, ASKED));
     let keeps = files.iter().flat_map(|it| &it.items).any(|it| blocks(it).iter().any(is_retain));
     let pous = files.iter_mut().flat_map(|it| &mut it.items).filter_map(|it| match it {
         Item::Pou(pou) => Some(pou),
@@ -83,7 +83,7 @@ pub(crate) fn expand(files: &mut [File<'_>], binds: &dyn Fn(Span) -> bool) {
         starts(pou, addresses);
     }
     if let Some(file) = files.get_mut(usize::from(at.file)) {
-        file.items.extend(of_globals(at, tells, keeps, of_globals_alone));
+        file.items.extend(of_globals(at, is_asked, keeps, of_globals_alone));
     }
 }
 
@@ -182,13 +182,13 @@ fn retained<'s>(wanted: &[(&'static str, &[&'static str])], kind: VarKind, at: S
     VarBlock { kind, retain: Some(at), ..variables(wanted, at) }
 }
 
-/// The FUNCTION that starts the global instances, and its variables. `tells`: whether a body reads `bInitRetains`;
+/// The FUNCTION that starts the global instances, and its variables. `is_asked`: whether a body reads `bInitRetains`,
 /// `keeps`: whether some global variables are RETAIN.
-fn of_globals(at: Span, tells: bool, keeps: bool, addresses: Addresses<'_>) -> Vec<Item<'_>> {
+fn of_globals(at: Span, is_asked: bool, keeps: bool, addresses: Addresses<'_>) -> Vec<Item<'_>> {
     let ([_, flag], [_, kept]) = (STARTED, KEPT);
     let mut own = variables(&[(flag, &["BOOL"])], at);
     let mut body = once(flag, at, addresses);
-    if tells {
+    if is_asked {
         own.vars.extend(variables(&[(RETAINS, &["BOOL"])], at).vars);
         let fresh = Expr { kind: ExprKind::Unary(UnaryOp::Not, Box::new(named(kept, at))), span: at };
         let told = assign(RETAINS, fresh);
@@ -202,6 +202,6 @@ fn of_globals(at: Span, tells: bool, keeps: bool, addresses: Addresses<'_>) -> V
     own.kind = VarKind::Global;
     let function = Pou { body, ..Pou::new(PouKind::Function, Name { text: GLOBALS, span: at }, at) };
     let mut items = vec![Item::Globals(own), Item::Pou(function)];
-    items.extend((tells || keeps).then(|| Item::Globals(retained(&[(kept, &["BOOL"])], VarKind::Global, at))));
+    items.extend((is_asked || keeps).then(|| Item::Globals(retained(&[(kept, &["BOOL"])], VarKind::Global, at))));
     items
 }

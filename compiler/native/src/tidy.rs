@@ -125,7 +125,7 @@ impl Test {
     }
 }
 
-/// Has a jump at the end of a block, instead of what is there.
+/// Puts a jump at the end of a block, in place of the branch.
 fn jump(function: &mut Function, end: Inst, destination: BlockCall) {
     function.dfg.insts[end] = InstructionData::Jump { opcode: Opcode::Jump, destination };
 }

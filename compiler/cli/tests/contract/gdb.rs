@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 const AARCH64: &str = "aarch64-unknown-linux-gnu";
 const LIBRARIES: &str = "/usr/aarch64-linux-gnu";
 
-/// The statements that gdb stops at are marked by what is said in the comments behind them.
+/// The statements that gdb stops at are marked by the comments after them.
 const PLANT: &str = "TYPE
     Mode   : (Idle, Filling, Jammed);
     Recipe : STRUCT

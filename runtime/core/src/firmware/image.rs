@@ -156,7 +156,7 @@ pub trait ProcessImage {
     }
 }
 
-/// An image in memory, as each place has its [`at`](Place::at). An area may end early: what is behind its end is read as 0 and is not
+/// An image in memory, as each place has its [`at`](Place::at). An area may end early: what is past its end is read as 0 and is not
 /// written.
 #[derive(Debug)]
 pub struct Areas<'a> {

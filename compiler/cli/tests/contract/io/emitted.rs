@@ -43,7 +43,7 @@ qw := iw; qx := ix OR mx; qb := qb OR ib; seen := md; heard := mws;
 END_PROGRAM
 ";
 
-/// Variables that references lead to are in cells. What has no place is left out.
+/// Variables that references lead to are in cells. Variables without an address are left out.
 const REFERRED: &str = "
 TYPE Head : STRUCT number : INT; ready : BOOL; END_STRUCT; Mode : (Off, Auto := 5); END_TYPE
 PROGRAM Main
