@@ -85,6 +85,17 @@ fn a_line_without_a_statement_is_the_next_one_of_its_pou() {
 }
 
 #[test]
+fn a_run_that_faults_before_its_breakpoint_says_both() {
+    let text = "PROGRAM Main\nVAR n : INT := 2; a : ARRAY[0..2] OF INT; END_VAR\nn := n + 1;\na[n] := 1;\nn := 0;\nEND_PROGRAM\n";
+    let folder = Folder::with("debug_fault", &[("plant.st", text)]);
+    let err = run(&folder, "--break 5 --scans 3").err(3);
+    has(
+        &err,
+        &["note: the run never stopped at --break plant.st:5\n", "plant.st:4:3: fault: index out of range (scan 1"],
+    );
+}
+
+#[test]
 fn a_pou_that_never_runs_is_reported() {
     let folder = plant("debug_unused");
     let err = run(&folder, "--break 8 --scans 3").err(0);
