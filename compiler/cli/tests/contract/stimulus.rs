@@ -64,7 +64,7 @@ END_PROGRAM
         ]
     );
     folder.staunch(&format!("{run} -D W0522")).err(1);
-    folder.write("main.st", &TEXT.replace("full := c.Q", "{allow W0522}\nfull := c.Q"));
+    folder.write("main.st", TEXT.replace("full := c.Q", "{allow W0522}\nfull := c.Q"));
     assert!(!folder.staunch(run).err(0).contains("`full`"));
     // A trace is a stimulus, in which only inputs count.
     folder.write("in.csv", "scan,time_ms,start,full\n1,0,TRUE,FALSE\n");
@@ -74,7 +74,7 @@ END_PROGRAM
 CONFIGURATION Plant RESOURCE Cpu ON Plc TASK t(INTERVAL := T#10ms, PRIORITY := 1);
 PROGRAM other WITH t : Other; PROGRAM main WITH t : Main; END_RESOURCE END_CONFIGURATION
 ";
-    folder.write("main.st", &format!("{TEXT}{reader}"));
+    folder.write("main.st", format!("{TEXT}{reader}"));
     folder.write("in.csv", "scan,lamp\n1,TRUE\n");
     assert!(!folder.staunch(run).err(0).contains("W0522"));
 }

@@ -306,7 +306,7 @@ FUNCTION_BLOCK Other
 END_FUNCTION_BLOCK
 ";
     let folder = Folder::with("tests_wrong", &[("wrong.st", tests)]);
-    let expected = "wrong.st:3:11: error[E0301]: `IEC.TON` has no pin `Z`
+    let expected = "wrong.st:3:11: error[E0301]: `TON` has no pin `Z`
 wrong.st:5:12: error[E0302]: wrong number of arguments for `ASSERT_EQ`
 wrong.st:6:17: error[E0316]: `delay` cannot be replaced by a mock
 wrong.st:8:5: error[E0305]: `MOCK` belongs to a unit test

@@ -57,7 +57,7 @@ pub(super) fn project(name: &str) -> Folder {
 #[test]
 fn json_shows_places_of_vendors_files_as_people_see_them() {
     let folder = project("json_vendor");
-    folder.write("POUs/MAIN.TcPOU", &MAIN.replace("go := pulse", "go := pluse"));
+    folder.write("POUs/MAIN.TcPOU", MAIN.replace("go := pulse", "go := pluse"));
     let err = folder.staunch("check Line.plcproj").err(1);
     let out = folder.staunch("check Line.plcproj --message-format json").out(1);
     let diagnostic: serde_json::Value = serde_json::from_str(out.lines().next().unwrap()).unwrap();
