@@ -5,6 +5,8 @@ use staunch_frontend::{Code, Diagnostic};
 use staunch_host::{Map, Place, csv_cells, place_of, same_name};
 use staunch_ir::Program;
 use staunch_ir::overwritten::{Overwritten, overwritten};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 /// Reports the columns. What cannot be read is left to the host, which says why.
@@ -32,13 +34,25 @@ pub fn lint(session: &Session, program: &Program, stimulus: &Path) -> Result<boo
     session.report(lints.collect())
 }
 
+/// A longer header is not looked at.
+const LONGEST: u64 = 1 << 20;
+
 /// The names in the header, up to the expected values.
 fn columns(stimulus: &Path) -> Vec<String> {
-    let bytes = std::fs::read(stimulus).unwrap_or_default();
-    let text = String::from_utf8_lossy(&bytes);
-    let header = text.trim_start_matches('\u{feff}').lines().next().unwrap_or_default();
+    let header = header(stimulus).unwrap_or_default();
+    let header = String::from_utf8_lossy(&header);
+    let header = header.trim_start_matches('\u{feff}').trim_end_matches(['\r', '\n']);
     let cells = csv_cells(header).and_then(|it| it.into_iter().next()).unwrap_or_default();
     cells.into_iter().take_while(|it| it != "|").collect()
+}
+
+/// The first line of a file. A pipe is left to the host, which reads it once.
+fn header(stimulus: &Path) -> std::io::Result<Vec<u8>> {
+    let mut header = Vec::new();
+    if std::fs::metadata(stimulus)?.is_file() {
+        BufReader::new(File::open(stimulus)?).take(LONGEST).read_until(b'\n', &mut header)?;
+    }
+    Ok(header)
 }
 
 fn holds(overwritten: &Overwritten, place: &Place, map: &Map) -> bool {

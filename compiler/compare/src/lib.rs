@@ -5,6 +5,7 @@
 //! each program's text says, both side by side, what the vendors' documents leave open, what their inputs may be, how they may come
 //! to differ, the search for inputs that make them, what it has found, what that comes to, and all of it together. What reads
 //! files and prints is the command's.
+#![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod request;

@@ -216,6 +216,38 @@ static TABLE: [u8; SLOTS] = {
     table
 };
 
+/// For each character the number of the sign that it is, plus 1; 0 where it is none.
+static SINGLE: [u8; 128] = {
+    let mut table = [0; 128];
+    let mut at = 0;
+    while at < SIGNS.len() {
+        let sign = SIGNS[at].0.as_bytes();
+        at += 1;
+        if sign.len() == 1 {
+            table[sign[0] as usize] = at as u8;
+        }
+    }
+    table
+};
+
+/// The characters that may be the second of a sign.
+static SECONDS: [bool; 128] = {
+    let mut table = [false; 128];
+    let mut at = 0;
+    while at < SIGNS.len() {
+        let sign = SIGNS[at].0.as_bytes();
+        if sign.len() == 2 {
+            table[sign[1] as usize] = true;
+        }
+        at += 1;
+    }
+    table
+};
+
+fn is_in(table: &[bool; 128], byte: u8) -> bool {
+    table.get(usize::from(byte)).is_some_and(|it| *it)
+}
+
 /// Of the length, and of three letters in either case.
 const fn hash(word: &[u8]) -> usize {
     let (first, middle, last) = (word[0] & 31, word[word.len() / 2] & 31, word[word.len() - 1] & 31);
@@ -238,13 +270,16 @@ impl Kind {
 
     /// The sign of two characters.
     pub(super) fn of_signs(first: u8, second: u8) -> Option<Self> {
+        if !is_in(&SECONDS, second) {
+            return None;
+        }
         let found = SIGNS.iter().find(|it| matches!(*it.0.as_bytes(), [a, b] if a == first && b == second));
         found.map(|it| it.1)
     }
 
     /// The sign of one character.
     pub(super) fn of_sign(sign: u8) -> Option<Self> {
-        let found = SIGNS.iter().find(|it| matches!(*it.0.as_bytes(), [it] if it == sign));
-        found.map(|it| it.1)
+        let at = usize::from(*SINGLE.get(usize::from(sign))?).checked_sub(1)?;
+        Some(SIGNS[at].1)
     }
 }

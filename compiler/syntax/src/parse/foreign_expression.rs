@@ -38,13 +38,16 @@ pub fn cast<'s>(input: &mut In<'_, '_, 's>, opened: Span, ty: &str, operand: &Ex
 
 /// Whether `ADR n` is here: a function and its one operand, which have no parentheses.
 pub fn lacks_parentheses(input: &mut In<'_, '_, '_>) -> bool {
+    // Each name is looked at: what follows decides first.
+    if !matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::Real) {
+        return false;
+    }
     let at = input.number();
     let (name, next) = (input.here(), input.state().place(at + 1));
     let text = input.text(name);
     let is_conversion = || text.to_ascii_uppercase().contains("TO_");
     let is_function = FUNCTIONS.iter().any(|it| text.eq_ignore_ascii_case(it)) || is_conversion();
-    let operand = matches!(input.kind_ahead(1), Kind::Name | Kind::Integer | Kind::Real);
-    operand && is_function && !input.state().breaks(name.end, next.start) && !is_infix(input)
+    is_function && !input.state().breaks(name.end, next.start) && !is_infix(input)
 }
 
 /// `ADR n`, with its operand read.

@@ -48,7 +48,11 @@ pub fn is_source(text: &str) -> bool {
 /// Whether there is a `#` before a name, and nothing before that which makes it a literal's.
 fn may_have_locals(text: &str) -> bool {
     let is_of_name = |it: &u8| it.is_ascii_alphanumeric() || *it == b'_' || !it.is_ascii();
-    text.as_bytes().windows(3).any(|it| it[1] == b'#' && !is_of_name(&it[0]) && (it[2] == b'"' || is_of_name(&it[2])))
+    let bytes = text.as_bytes();
+    memchr::memchr_iter(b'#', bytes).any(|at| {
+        let [before, after] = [at.checked_sub(1), at.checked_add(1)].map(|it| it.and_then(|it| bytes.get(it)));
+        before.is_some_and(|it| !is_of_name(it)) && after.is_some_and(|it| *it == b'"' || is_of_name(it))
+    })
 }
 
 pub fn read(file: &str) -> Assembly {

@@ -101,9 +101,9 @@ fn a_damaged_answer_is_no_value() {
     for end in 1..frame.len() {
         is_damaged(read(&mut rtu, &[&frame[..end]]), if end == 1 { "1 of 9 bytes" } else { " of 9 bytes" });
     }
-    is_damaged(read(&mut rtu, &[&[0xFF], &frame]), "no frame");
+    is_damaged(read(&mut rtu, &[&[0xFF], &frame]), "not form a frame");
     is_damaged(read(&mut rtu, &[&[&frame[..], &[0]].concat()]), "bytes after the answer");
-    is_damaged(read(&mut rtu, &[&[0x55; 200], &[0x55; 200], &frame]), "no frame");
+    is_damaged(read(&mut rtu, &[&[0x55; 200], &[0x55; 200], &frame]), "not form a frame");
     assert_eq!(read(&mut rtu, &[&frame]).unwrap(), ANSWER);
 }
 
@@ -133,7 +133,7 @@ fn what_comes_before_a_request_is_dropped() {
 #[test]
 fn an_answer_after_noise_is_dropped() {
     let mut rtu = rtu();
-    is_damaged(read(&mut rtu, &[&[1, 2, 3], &[], &framed(&[7, 3, 4, 9, 9, 9, 9])]), "no frame");
+    is_damaged(read(&mut rtu, &[&[1, 2, 3], &[], &framed(&[7, 3, 4, 9, 9, 9, 9])]), "not form a frame");
     assert!(rtu.port.received.is_empty());
     assert_eq!(read(&mut rtu, &[&whole()]).unwrap(), ANSWER);
 }
