@@ -5,6 +5,7 @@ mod added;
 mod chart;
 mod declared;
 mod enabled;
+mod index;
 mod testing;
 
 mod mutate;
@@ -37,6 +38,7 @@ pub use staunch_syntax::{ast, format, vendor};
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, excerpt, render};
 pub use dialect::{Dialect, rules};
+pub use index::{DefId, Definition, DefinitionKind, Index, Meaning, Offer, Use};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::{AskedAt, OPEN_OPTIONS, OpenOption, Options, Question, Stops};
@@ -50,6 +52,7 @@ pub use vendor::Reference;
 
 use staunch_syntax::{diagnostic, foreign, lex, parse, source, spelling};
 
+use index::recorder::Recorder;
 use lex::{Declared, Known, Subject};
 use log::Log;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -122,12 +125,27 @@ impl Compilation {
 
 /// Checks the sources as one program; the order of files does not matter.
 pub fn compile(sources: &Sources, options: &Options) -> Compilation {
-    with_library(sources, options, Bodies::Kept)
+    with_library(sources, options, Bodies::Kept, None)
 }
 
 /// What [`compile`] has to say, in less memory: each body is dropped when it has been checked.
 pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
-    with_library(sources, options, Bodies::Dropped).diagnostics
+    with_library(sources, options, Bodies::Dropped, None).diagnostics
+}
+
+/// What [`check`] has to say, and what the sources' names mean. Where they use the library, its units are files after
+/// theirs: the sources are given back with these. Where a name begins at the place that is `asked` about, the index has all
+/// that it could be.
+pub fn index(sources: &Sources, options: &Options, asked: Option<(u16, u32)>) -> (Index, Option<Sources>) {
+    let mut index = Index { asked, ..Index::default() };
+    let (diagnostics, extended) = match prelude::Extended::of(sources, options) {
+        Some(extended) => {
+            let found = run(&extended.sources, options, Bodies::Dropped, Some(&mut index)).diagnostics;
+            (extended.of_the_user(found), Some(extended.sources))
+        }
+        None => (run(sources, options, Bodies::Dropped, Some(&mut index)).diagnostics, None),
+    };
+    (Index { diagnostics, ..index }, extended)
 }
 
 /// Whether the program that is made has the bodies of its POUs, or the calls in them alone.
@@ -138,17 +156,17 @@ enum Bodies {
 }
 
 /// What the sources name of the library becomes a part of the program.
-fn with_library(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
-    let Some(extended) = prelude::Extended::of(sources, options) else { return run(sources, options, keep) };
-    let compilation = run(&extended.sources, options, keep);
+fn with_library(sources: &Sources, options: &Options, keep: Bodies, index: Option<&mut Index>) -> Compilation {
+    let Some(extended) = prelude::Extended::of(sources, options) else { return run(sources, options, keep, index) };
+    let compilation = run(&extended.sources, options, keep, index);
     Compilation { diagnostics: extended.of_the_user(compilation.diagnostics), ..compilation }
 }
 
 /// Checks the program until what holds of the whole of it is known: mostly once.
-fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
+fn run(sources: &Sources, options: &Options, keep: Bodies, mut index: Option<&mut Index>) -> Compilation {
     let mut whole = Whole::default();
     loop {
-        if let Some(compilation) = run_with(sources, options, keep, &mut whole) {
+        if let Some(compilation) = run_with(sources, options, keep, &mut whole, index.as_deref_mut()) {
             return compilation;
         }
     }
@@ -156,11 +174,21 @@ fn run(sources: &Sources, options: &Options, keep: Bodies) -> Compilation {
 
 /// The pipeline, in the order of the modules above. Nothing, where the bodies show more of the whole than they were
 /// checked with.
-fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whole) -> Option<Compilation> {
+fn run_with(
+    sources: &Sources,
+    options: &Options,
+    keep: Bodies,
+    whole: &mut Whole,
+    mut index: Option<&mut Index>,
+) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
+    log.index = index.as_ref().map(|it| Recorder::asked(it.asked));
     let Some(files) = parse_all(sources, &mut log.diagnostics) else {
         return Some(Compilation::rejected(log.diagnostics));
     };
+    if let Some(index) = &mut index {
+        index.declare(&files);
+    }
     let Trees { mut files, groups, stubs, allowances, has_tests } = write_out(files, &mut log);
     let mut runs = declare::run::runs(&files, options.tests, sources, &whole.shared);
     declare::run::begin_cycles(&mut files, &runs, options.tests);
@@ -197,13 +225,16 @@ fn run_with(sources: &Sources, options: &Options, keep: Bodies, whole: &mut Whol
         return None;
     }
     let tests = program::tests::tests(&mut declarations, groups);
+    if let (Some(index), Some(found)) = (&mut index, declarations.log.index.take()) {
+        index.add(found);
+    }
     let readdressed = std::mem::take(&mut declarations.log.readdressed);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
     let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
     let mut compilation = Compilation { tests, coverage, readdressed, ..compilation };
     if has_tests && !options.tests {
         // Unit tests that do not run are still checked.
-        let mut found = run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped).diagnostics;
+        let mut found = run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped, index).diagnostics;
         if keep == Bodies::Kept {
             // The instances of a test may make recursion that the program has not.
             found.retain(|it| it.code != Code::E0310);

@@ -1,6 +1,7 @@
 //! The sources, and what is reported of them.
 
 use crate::dialect::Dialect;
+use crate::index::recorder::{Recorder, Target};
 use crate::options::Options;
 use crate::{Code, Diagnostic, Fix, Severity, Sources, Span};
 use rustc_hash::FxHashSet;
@@ -20,6 +21,8 @@ pub(crate) struct Log<'s> {
     pub nonretentive: FxHashSet<Span>,
     /// How addresses are written on a system that the program moves to.
     pub readdressed: Vec<Fix>,
+    /// What names mean, where an editor asks for it.
+    pub index: Option<Recorder>,
     line_cache: LineCache,
 }
 
@@ -47,6 +50,7 @@ impl<'s> Log<'s> {
             asked_attributes: Vec::new(),
             nonretentive: FxHashSet::default(),
             readdressed: Vec::new(),
+            index: None,
             line_cache,
         }
     }
@@ -61,6 +65,30 @@ impl<'s> Log<'s> {
 
     pub fn not_supported(&mut self, span: Span, what: &str) {
         self.report(unsupported(span, what));
+    }
+
+    /// Notes what a name means, where that is asked for.
+    pub fn note(&self, name: Span, target: impl FnOnce() -> Target) {
+        if let Some(index) = &self.index {
+            index.note(name, target());
+        }
+    }
+
+    /// Notes the declaration that a name means.
+    pub fn note_declared(&self, name: Span, declared: Span) {
+        self.note(name, || Target::Declared(declared));
+    }
+
+    /// Whether an editor asks what a name could be that is here.
+    pub fn is_asked(&self, name: Span) -> bool {
+        self.index.as_ref().is_some_and(|it| it.is_asked(name))
+    }
+
+    /// A name that could be where an editor asks.
+    pub fn offer(&self, name: impl Into<String>, target: Target) {
+        if let Some(index) = &self.index {
+            index.offer(name, target);
+        }
     }
 
     pub fn has_errors(&self) -> bool {

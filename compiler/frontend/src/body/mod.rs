@@ -67,6 +67,9 @@ pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Stat
     }
     let uncalled: Vec<_> = (0..bodies.len()).filter(|it| decl.is_generic(*it) && !decl.has_instances(*it)).collect();
     uncalled.into_iter().for_each(|it| check_uncalled(decl, it, bodies));
+    if let Some(index) = &decl.log.index {
+        index.mute(false);
+    }
     checked
 }
 
@@ -180,6 +183,9 @@ fn check_body<'s>(
     let pou = decl.pous[slot].ast;
     let signature = decl.signature(slot)?;
     let is_generic = decl.is_generic(slot) || decl.pous[slot].instance.is_some();
+    if let Some(index) = &decl.log.index {
+        index.mute(pou.home.is_some());
+    }
     let mut checker = Checker::of_body(decl, slot, &signature);
     checker.instance = is_generic.then_some(slot);
     checker.is_covered = checker.decl.is_covered(slot) && !checker.is_suite();

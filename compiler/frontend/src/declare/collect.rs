@@ -31,7 +31,9 @@ impl<'s> Declarations<'s> {
         let written: Vec<_> = self.pous.iter().filter(|it| it.owner.is_none()).flat_map(|it| &it.ast.bases).collect();
         for path in written {
             let Some((last, around)) = path.split_last() else { continue };
-            match self.lookup(path, Sense::Type) {
+            let found = self.lookup(path, Sense::Type);
+            self.note_path(path, &found);
+            match found {
                 Found::Several(meanings) => self.report_ambiguous(*last, &meanings),
                 Found::Nothing if self.names.root(last.text).is_some() || !self.names.holders(last.text).is_empty() => {
                     let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");

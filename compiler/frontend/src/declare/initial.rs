@@ -264,6 +264,7 @@ impl<'s> Declarations<'s> {
             seen.push(Key(name.text));
             let overlay = self.program.structure(id).overlays.iter().find(|it| Key(&it.name) == Key(name.text));
             if let Some(overlay) = overlay.cloned() {
+                self.note_member(*name, id);
                 let value = self.initial(initial, &Resolved::plain(overlay.ty), scope)?;
                 let field = overlay.field.index();
                 values[field] = self.with_overlay(fields[field].ty, &values[field], &overlay, &value);
@@ -274,6 +275,7 @@ impl<'s> Declarations<'s> {
                 self.unknown_member(*name, target.ty, near.as_deref());
                 return None;
             };
+            self.note_member(*name, id);
             let field = &fields[at];
             if field.constant && field.section != Section::Input {
                 self.refuse_constant_of_instance(*name, field);
@@ -311,6 +313,7 @@ impl<'s> Declarations<'s> {
                 self.unknown_member(*name, target.ty, nearest(name.text, pins.iter().map(|it| it.name)));
                 return None;
             };
+            self.note_pin(*name, id);
             if !once(&mut seen, at) {
                 self.given_twice(*name);
                 continue;

@@ -1,6 +1,7 @@
 //! Type specifications to types.
 
 use super::run::configurations;
+use crate::index::recorder::Target;
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
 use crate::dialect::rules::InitialValues;
@@ -325,10 +326,12 @@ impl<'s> Declarations<'s> {
 
     /// The instances of a class that a path names; of an ABSTRACT one there are those of its heirs.
     pub(super) fn class_at(&mut self, path: &[ast::Name<'s>]) -> Option<Type> {
-        let Found::One(Meaning::Declared(Entry::Pou(at))) = self.lookup(path, Sense::Type) else { return None };
+        let found = self.lookup(path, Sense::Type);
+        let Found::One(Meaning::Declared(Entry::Pou(at))) = found else { return None };
         if !self.pous[at].ast.kind.is_block() {
             return None;
         }
+        self.note_path(path, &found);
         self.signature(at)?.state.map(Type::Struct)
     }
 
@@ -337,7 +340,10 @@ impl<'s> Declarations<'s> {
             return self.resolve_name(*name);
         }
         let (name, around) = path.split_last()?;
-        match self.lookup(path, Sense::Type) {
+        self.offer_in(around, *name, Sense::Type);
+        let found = self.lookup(path, Sense::Type);
+        self.note_path(path, &found);
+        match found {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, *name),
             Found::One(Meaning::Block(block)) => Some(block_type(block)),
@@ -386,12 +392,16 @@ impl<'s> Declarations<'s> {
     }
 
     fn resolve_name(&mut self, name: ast::Name<'s>) -> Option<Resolved> {
+        self.offer_types(name);
         let rules = self.dialect(name.span).rules();
         if let Some(elementary) = rules.named(name.text) {
+            self.log.note(name.span, || Target::Elementary(elementary));
             let initial = scalar_initial(rules.first_value(elementary));
             return Some(Resolved { ty: Type::Elementary(elementary), initial });
         }
-        match self.lookup(&[name], Sense::Type) {
+        let found = self.lookup(&[name], Sense::Type);
+        self.note_path(&[name], &found);
+        match found {
             Found::One(Meaning::Declared(Entry::Type(at))) => self.named_type(at),
             Found::One(Meaning::Declared(Entry::Pou(at))) => self.instance_type(at, name),
             Found::One(Meaning::Block(block)) => Some(block_type(block)),
@@ -753,6 +763,9 @@ impl<'s> Declarations<'s> {
         }
         let location = self.location(span);
         self.table.index.values.add(id, values.iter().map(|it| it.name.text));
+        if let Some(index) = &self.log.index {
+            values.iter().for_each(|it| index.declare_enumerator(id, it.name.text, it.name.span));
+        }
         self.program.enums.push(Enum { name: name.to_owned(), doc, location, base, values: enumerators });
         Some(Resolved { ty: Type::Enum(id), initial: scalar_initial(first) })
     }

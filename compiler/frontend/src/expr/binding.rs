@@ -1,10 +1,13 @@
 //! Which argument goes to which parameter.
 
 use super::checker::Checker;
+use crate::index::recorder::Target;
 use crate::names::Sense;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
-use staunch_ir::Section;
+use crate::types::signature::Formal;
+use staunch_ir::{BlockId, Section};
+use staunch_runtime::Pin;
 
 /// What a parameter was given.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +26,24 @@ pub(crate) enum Given<'a, 's> {
 pub(crate) struct Parameter<'n> {
     pub name: &'n str,
     pub section: Section,
+    /// What its name means where an argument has it.
+    pub meaning: Target,
+}
+
+impl<'n> Parameter<'n> {
+    /// Of a standard function, or of an instruction.
+    pub fn of_library(name: &'n str, section: Section) -> Self {
+        Self { name, section, meaning: Target::Parameter }
+    }
+
+    pub fn of_pin(block: BlockId, pin: &'n Pin, section: Section) -> Self {
+        let at = block.info().pins.iter().position(|it| it.name == pin.name);
+        Self { name: pin.name, section, meaning: at.map_or(Target::Parameter, |at| Target::Pin(block, at)) }
+    }
+
+    pub fn of_formal(formal: &Formal<'n>) -> Self {
+        Self { name: formal.name.text, section: formal.section, meaning: Target::Declared(formal.name.span) }
+    }
 }
 
 impl<'s> Checker<'_, 's> {
@@ -48,6 +69,7 @@ impl<'s> Checker<'_, 's> {
         };
         let mut complete = true;
         let mut compared = false;
+        self.offer_parameters(parameters, arguments);
         for (number, argument) in arguments.iter().enumerate() {
             if let ArgumentKind::Positional(value) = &argument.kind
                 && let Some((at, error)) = self.compared_parameter(parameters, value)
@@ -73,11 +95,11 @@ impl<'s> Checker<'_, 's> {
                     }
                 }
                 ArgumentKind::Input(name, value) => self
-                    .parameter(parameters, *name, &unknown)
+                    .noted_parameter(parameters, *name, &unknown)
                     .and_then(|at| self.direction(owner, &parameters[at], false, *name).map(|()| at))
                     .map(|at| (at, Given::Value(value))),
                 ArgumentKind::Output { name, negated, target } => self
-                    .parameter(parameters, *name, &unknown)
+                    .noted_parameter(parameters, *name, &unknown)
                     .and_then(|at| self.direction(owner, &parameters[at], true, *name).map(|()| at))
                     .map(|at| (at, Given::Output { target: target.as_ref(), negated: *negated })),
             };
@@ -122,6 +144,32 @@ impl<'s> Checker<'_, 's> {
                 .help(format!("write `{} {arrow} …`", name.text))
                 .fix(*sign, arrow);
         Some((at, error))
+    }
+
+    /// Offers the parameters that a call does not give yet, where an argument begins.
+    fn offer_parameters(&self, parameters: &[Parameter<'_>], arguments: &[ast::Argument<'s>]) {
+        let name = |it: &ast::Argument<'s>| match &it.kind {
+            ArgumentKind::Positional(value) => value.first_name(),
+            ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. } => Some(*name),
+        };
+        let names: Vec<_> = arguments.iter().filter_map(name).collect();
+        if !names.iter().any(|it| self.decl.log.is_asked(it.span)) {
+            return;
+        }
+        for it in parameters.iter().filter(|it| !names.iter().any(|name| name.text.eq_ignore_ascii_case(it.name))) {
+            self.decl.log.offer(it.name, it.meaning.clone());
+        }
+    }
+
+    fn noted_parameter(
+        &self,
+        parameters: &[Parameter<'_>],
+        name: ast::Name<'s>,
+        unknown: &impl Fn(ast::Name<'s>) -> Diagnostic,
+    ) -> Result<usize, Box<Diagnostic>> {
+        let at = self.parameter(parameters, name, unknown)?;
+        self.decl.log.note(name.span, || parameters[at].meaning.clone());
+        Ok(at)
     }
 
     pub(crate) fn parameter(

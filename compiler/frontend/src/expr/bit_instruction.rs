@@ -28,8 +28,8 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Expr> {
         let operands = instruction.operands();
-        let mut parameters: Vec<_> = operands.iter().map(|name| Parameter { name, section: Section::InOut }).collect();
-        parameters.push(Parameter { name: "RungIn", section: Section::Input });
+        let mut parameters: Vec<_> = operands.iter().map(|name| Parameter::of_library(name, Section::InOut)).collect();
+        parameters.push(Parameter::of_library("RungIn", Section::Input));
         let given = self.instruction_operands(name, &parameters, arguments)?;
         let mut bits = vec![None; operands.len()];
         let mut written: Vec<Written> = Vec::new();

@@ -136,11 +136,11 @@ impl<'s> Checker<'_, 's> {
             .pins
             .iter()
             .filter(|it| matches!(it.direction, Direction::Input | Direction::Output))
-            .map(|it| Parameter { name: it.name, section: section(it.direction) })
+            .map(|it| Parameter::of_pin(id, it, section(it.direction)))
             .collect();
         if let Some(kept) = info.facts.kept {
             let at = info.inputs().count();
-            parameters.insert(at, Parameter { name: kept.pin, section: Section::InOut });
+            parameters.insert(at, Parameter::of_library(kept.pin, Section::InOut));
         }
         let dialect = self.decl.dialect(span);
         let moved = self.arguments_by_own_names(id, arguments);
@@ -305,7 +305,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Vec<Given<'a, 's>>> {
         let owner = self.decl.pous[slot].ast.name.text;
         let parameters: Vec<_> =
-            formals.iter().map(|it| Parameter { name: it.name.text, section: it.section }).collect();
+            formals.iter().map(|it| Parameter::of_formal(it)).collect();
         let is_known = |it: &ast::Argument<'s>| match &it.kind {
             ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
                 formals.iter().any(|it| it.name.text.eq_ignore_ascii_case(name.text))

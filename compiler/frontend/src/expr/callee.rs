@@ -74,6 +74,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     pub(crate) fn named_callee(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Option<Callee<'s>> {
+        self.offer_values(name, Sense::Callee);
         let own = self.own_routine(name).filter(|_| !self.scope.is_own(name.text));
         if let Some(slot) = own.filter(|it| !self.is_function_in_method(*it, name)) {
             return Some(Callee::Routine(slot));
@@ -82,6 +83,7 @@ impl<'s> Checker<'_, 's> {
         if self.scope.is_refused(name.text) {
             return None;
         }
+        self.decl.note_path(&[name], &found);
         match found {
             Found::One(Meaning::Declared(Entry::Global(_))) => Some(Callee::Instance),
             Found::One(Meaning::Declared(Entry::Pou(slot))) => self.called_pou(slot, name),

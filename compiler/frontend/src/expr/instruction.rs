@@ -42,9 +42,9 @@ impl<'s> Checker<'_, 's> {
             true => tag_name(instructions, arguments).to_owned(),
             false => format!("{}_tag", id.info().instructions[instruction].name),
         };
-        let mut parameters = vec![Parameter { name: &tag, section: Section::InOut }];
+        let mut parameters = vec![Parameter::of_library(&tag, Section::InOut)];
         if takes_rung {
-            parameters.push(Parameter { name: "RungIn", section: Section::Input });
+            parameters.push(Parameter::of_library("RungIn", Section::Input));
         }
         let given = self.instruction_operands(name, &parameters, arguments)?;
         let Given::Value(operand) = given[0] else {

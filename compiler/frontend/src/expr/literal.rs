@@ -244,6 +244,7 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn enumerator(&mut self, path: &[ast::Name<'s>]) -> Option<Expr> {
         let [.., ty, name] = *path else { return None };
         let found = self.decl.lookup(path, Sense::Value);
+        self.decl.note_path(path, &found);
         let Found::One(Meaning::Enumerator(slot)) = found else {
             self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
             return None;
@@ -258,12 +259,14 @@ impl<'s> Checker<'_, 's> {
             self.error(Code::E0102, ty.span, format!("`{}` is not an enumeration", ty.text));
             return None;
         };
+        self.offer_enumerators(name, id);
         let Some(value) = self.decl.enumerator_named(id, name.text) else {
             let values = &self.decl.program.enumeration(id).values;
             let near = crate::spelling::nearest(name.text, values.iter().map(|it| it.name.as_str())).map(str::to_owned);
             self.decl.unknown_member(name, resolved.ty, near.as_deref());
             return None;
         };
+        self.decl.note_enumerator(name, id);
         let at = self.at(name.span);
         Some(Expr::new(resolved.ty, ExprKind::Const(value), at))
     }
@@ -271,16 +274,23 @@ impl<'s> Checker<'_, 's> {
     /// A bare enumerator: of the expected enumeration, or the only one with this name.
     pub(crate) fn bare_enumerator(&mut self, name: ast::Name<'s>, expected: Option<Type>) -> Option<Option<Expr>> {
         let at = self.at(name.span);
+        if let Some(Type::Enum(id)) = expected {
+            self.offer_enumerators(name, id);
+        }
         if let Some(Type::Enum(id)) = expected
             && (!self.decl.table.qualified.contains(&id) || self.is_in_its_type(name))
             && let Some(value) = self.decl.enumerator_named(id, name.text)
         {
+            self.decl.note_enumerator(name, id);
             return Some(Some(Expr::new(Type::Enum(id), ExprKind::Const(value), at)));
         }
         let slots = self.decl.enumerations_with(name);
         match slots.as_slice() {
             [] => {
                 let (ty, value) = self.decl.names.anonymous_enumerators.get(&Key(name.text)).copied()?;
+                if let Type::Enum(id) = ty {
+                    self.decl.note_enumerator(name, id);
+                }
                 Some(Some(Expr::new(ty, ExprKind::Const(value), at)))
             }
             [slot] => {

@@ -116,6 +116,9 @@ impl<'s> Checker<'_, 's> {
             self.report_abstract_super(routine, name.map_or(span, |it| it.span));
             return None;
         }
+        if let Some(name) = name {
+            self.decl.note_pou(name, routine);
+        }
         Some(routine)
     }
 
@@ -247,6 +250,7 @@ impl<'s> Checker<'_, 's> {
             self.report(self.not_constant_here(span));
             return None;
         }
+        self.decl.note_pou(name, slot);
         self.may_call(slot, name)?;
         let found = match instance {
             Some(instance) if !self.is_this_of_program(instance) => self.place(instance)?,
@@ -351,6 +355,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Option<Expr>> {
         let found = match &callee.bare().kind {
             Ast::Member(instance, name) => {
+                self.decl.note_pou(*name, slot);
                 self.may_call(slot, *name)?;
                 match is_super(instance) || self.is_this_of_program(instance) {
                     true => self.this()?,
@@ -358,6 +363,7 @@ impl<'s> Checker<'_, 's> {
                 }
             }
             Ast::Name(name) => {
+                self.decl.note_pou(*name, slot);
                 self.may_call(slot, *name)?;
                 self.this()?
             }

@@ -46,6 +46,7 @@ mod memory;
 pub(crate) mod method;
 mod migration;
 mod open_array;
+mod offers;
 pub(crate) mod operand;
 pub(crate) mod operator;
 mod order;

@@ -183,7 +183,7 @@ impl<'s> Checker<'_, 's> {
     ) -> Option<Vec<&'a ast::Expr<'s>>> {
         let names = parameter_names(signature, arguments.len());
         let names: Vec<_> = names.iter().map(|it| &**it).collect();
-        let parameters: Vec<_> = names.iter().map(|name| Parameter { name, section: Section::Input }).collect();
+        let parameters: Vec<_> = names.iter().map(|name| Parameter::of_library(name, Section::Input)).collect();
         let given = self.bind(name.text, &parameters, arguments, |argument| {
             Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
                 .label("unknown parameter")

@@ -4,6 +4,7 @@ use super::character::has_characters;
 use super::checker::Checker;
 use super::part::Part;
 use super::unresolved::not_constant;
+use crate::index::recorder::Target as Noted;
 use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
@@ -155,14 +156,17 @@ impl<'s> Checker<'_, 's> {
 
     /// The variable that a name means; the inner `None` says that it was reported.
     pub(crate) fn find_variable(&mut self, name: ast::Name<'s>) -> Option<Option<Rc<Variable<'s>>>> {
+        self.offer_values(name, Sense::Value);
         if let Some(variable) = self.scope.get(name.text) {
             variable.used.set(true);
             let variable = Rc::clone(variable);
+            self.decl.log.note_declared(name.span, variable.name.span);
             let is_outer = !self.scope.is_own(name.text);
             let is_within_reach = !is_outer || self.is_within_reach(&variable, name);
             return Some((is_within_reach && self.may_use(&variable, name)).then_some(variable));
         }
         if let Some(result) = self.result_variable(name) {
+            self.note_own_pou(name);
             return Some(Some(Rc::new(result)));
         }
         if self.scope.is_refused(name.text) {
@@ -174,6 +178,7 @@ impl<'s> Checker<'_, 's> {
             return Some(None);
         }
         let found = self.decl.lookup(&[name], Sense::Value);
+        self.decl.note_path(&[name], &found);
         match found {
             names::Found::Several(meanings) => {
                 self.decl.report_ambiguous(name, &meanings);
@@ -240,6 +245,7 @@ impl<'s> Checker<'_, 's> {
     /// `THIS^.x`: a variable of the POU around.
     fn member_of_this(&mut self, name: ast::Name<'s>) -> Option<Found<'s>> {
         let this = self.this()?.place;
+        self.offer_members(name, this.ty);
         let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
         let Some(variable) = scope.get(name.text).cloned() else {
             // A METHOD that is inherited has been looked at before.
@@ -251,6 +257,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         variable.used.set(true);
+        self.decl.log.note_declared(name.span, variable.name.span);
         let may_use = self.is_within_reach(&variable, name) && self.may_use(&variable, name);
         may_use.then(|| self.found(&variable, name))
     }
@@ -285,6 +292,13 @@ impl<'s> Checker<'_, 's> {
             retain: false,
             used: Rc::default(),
         })
+    }
+
+    /// Notes that a name means the POU around: its result.
+    fn note_own_pou(&self, name: ast::Name<'s>) {
+        if let Some(slot) = self.slot {
+            self.decl.note_pou(name, slot);
+        }
     }
 
     fn declared_but_refused(&self, name: ast::Name<'s>) -> bool {
@@ -343,6 +357,7 @@ impl<'s> Checker<'_, 's> {
             };
         }
         let found = self.place_or_view(base)?;
+        self.offer_members(name, self.type_of(&found));
         if self.is_unknown_head(self.type_of(&found), name) {
             return None;
         }
@@ -405,6 +420,7 @@ impl<'s> Checker<'_, 's> {
             );
             return None;
         }
+        self.decl.note_member(name, id);
         if let Some(overlay) = self.overlay(&found, id, name) {
             return Some(overlay);
         }
@@ -518,6 +534,7 @@ impl<'s> Checker<'_, 's> {
                 Access::Inner(name)
             }
         };
+        self.decl.log.note_declared(name.span, variable.name.span);
         let (place, view) = self.decl.image.stored(&variable.place);
         Some(Some(Found { place, view: view.map(Window::from), access }))
     }
@@ -552,6 +569,7 @@ impl<'s> Checker<'_, 's> {
             _ if pins[at].direction == Direction::Output && !self.is_test() => Access::Output(name),
             Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
         };
+        self.decl.log.note(name.span, || Noted::Pin(id, at));
         let field = FieldId::next(at);
         Some(Found { place: found.place.field(field, id.pin_type(field)?), view: None, access })
     }

@@ -35,7 +35,10 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn global_of_namespace(&mut self, expr: &ast::Expr<'s>) -> Option<Option<Rc<Variable<'s>>>> {
         let path = self.namespace_path(expr)?;
         let (last, around) = path.split_last()?;
-        match self.decl.lookup(&path, Sense::Value) {
+        self.decl.offer_in(around, *last, Sense::Value);
+        let found = self.decl.lookup(&path, Sense::Value);
+        self.decl.note_path(&path, &found);
+        match found {
             Found::One(Meaning::Declared(Entry::Global(at))) => Some(self.global(at)),
             Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, *last) => {
                 Some(self.decl.program_variable(slot))
@@ -69,7 +72,12 @@ impl<'s> Checker<'_, 's> {
         let path = expr.path().filter(|it| it.len() > 1 && self.scope.get(it[0].text).is_none())?;
         if let Some(constant) = self.decl.constant_of_pou(&path) {
             constant.used.set(true);
-            return Some(Some(Rc::clone(constant)));
+            let (constant, declared) = (Rc::clone(constant), constant.name.span);
+            if let [pou @ .., name] = path.as_slice() {
+                self.decl.note_path(pou, &self.decl.lookup(pou, Sense::Value));
+                self.decl.log.note_declared(name.span, declared);
+            }
+            return Some(Some(constant));
         }
         let slot = self.decl.pou_of_constant(&path)?;
         let own = self.decl.pous[slot].ast.constants().flat_map(|it| &it.vars).flat_map(|it| &it.names);
@@ -109,7 +117,9 @@ impl<'s> Checker<'_, 's> {
         }
         let path = callee.path()?;
         let (last, around) = path.split_last()?;
-        match self.decl.lookup(&path, Sense::Callee) {
+        let found = self.decl.lookup(&path, Sense::Callee);
+        self.decl.note_path(&path, &found);
+        match found {
             Found::One(Meaning::Instruction) => Some(Some(Callee::Instruction(*last))),
             Found::One(Meaning::Function) => Some(Some(Callee::Standard(*last))),
             Found::One(Meaning::Declared(Entry::Pou(slot))) => Some(self.called_pou(slot, *last)),

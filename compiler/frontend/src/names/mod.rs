@@ -61,6 +61,13 @@ pub(crate) enum Meaning {
     Function,
 }
 
+/// What a name could mean at a place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Visible {
+    Declared(Entry),
+    Space(SpaceId),
+}
+
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Found {
     Nothing,
@@ -181,6 +188,37 @@ impl<'s> Names<'s> {
             [name] => self.bare(site, name.text, sense),
             [first, between @ .., last] => self.qualified(site, first.text, between, last.text, sense),
         }
+    }
+
+    /// All that a bare name could mean where it is, from the inside out: what [`lookup`](Self::lookup) goes through.
+    pub fn each_visible(&self, site: Site, sense: Sense, see: &mut dyn FnMut(&str, Visible)) {
+        let mut regions = self.regions.around(site.span).peekable();
+        while let Some(region) = regions.next() {
+            let outer = regions.peek().map(|it| it.space);
+            for space in self.spaces_to(region.space, outer).chain(region.uses.iter().copied()) {
+                self.each_in(site, space, sense, see);
+            }
+        }
+        let root = [SpaceId::ROOT].into_iter().chain(self.spaces_of_libraries());
+        for space in root {
+            self.each_in(site, space, sense, see);
+            if names_variables(sense) {
+                let of_it = self.listed.iter().flat_map(|(key, all)| all.iter().map(move |it| (key.0, *it)));
+                let of_it = of_it.filter(|(_, it)| self.around_list(it.0) == space);
+                of_it.for_each(|(name, it)| see(name, Visible::Declared(it.1)));
+            }
+        }
+        self.lists.iter().for_each(|(key, space)| see(key.0, Visible::Space(*space)));
+    }
+
+    /// What a namespace holds, as far as a place sees it.
+    pub fn each_in(&self, site: Site, space: SpaceId, sense: Sense, see: &mut dyn FnMut(&str, Visible)) {
+        for (key, entries) in &self.spaces[space.0].own {
+            // A type's name is what an enumerator or an instance of it begins with.
+            let senses = [sense, Sense::Type].into_iter().filter_map(|it| entries.of(it));
+            senses.filter(|it| self.sees(site, space, *entries, *it)).for_each(|it| see(key.0, Visible::Declared(it)));
+        }
+        self.spaces[space.0].inner.iter().for_each(|(key, inner)| see(key.0, Visible::Space(*inner)));
     }
 
     fn bare(&self, site: Site, name: &str, sense: Sense) -> Found {
@@ -508,6 +546,11 @@ impl<'s> Names<'s> {
             space = *self.spaces[space.0].inner.get(&Key(name.text))?;
         }
         Some(space)
+    }
+
+    /// A namespace's full name.
+    pub fn name_of(&self, space: SpaceId) -> &str {
+        &self.spaces[space.0].name
     }
 
     /// Where a place declares what it names.

@@ -13,6 +13,8 @@ pub(crate) mod index;
 pub(crate) mod instances;
 pub(crate) mod interfaces;
 pub(crate) mod jumps;
+mod noted;
+mod offered;
 mod overload_names;
 pub(crate) mod overloads;
 pub(crate) mod polymorphic;

@@ -78,7 +78,7 @@ impl<'s> Declarations<'s> {
     }
 
     /// The class or the INTERFACE that a type is of.
-    fn class_of(&self, ty: Type) -> Option<usize> {
+    pub(crate) fn class_of(&self, ty: Type) -> Option<usize> {
         let class = if let Type::Struct(id) = ty { self.slot_of_instance(id) } else { None };
         class.or_else(|| self.interface_of(ty))
     }

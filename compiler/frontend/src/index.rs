@@ -1,0 +1,97 @@
+//! What each name in the sources means, for an editor: filled while a program is checked, by what decides there what a
+//! name means, and only where it is asked for.
+
+pub(crate) mod definition;
+mod outline;
+pub(crate) mod recorder;
+
+pub use definition::{DefId, Definition, DefinitionKind};
+pub use recorder::Meaning;
+
+use crate::source::Span;
+use crate::{Diagnostic, ast};
+use recorder::Recorder;
+use rustc_hash::FxHashMap;
+
+/// A program as an editor asks about it. It is there for sources with mistakes, too: what could not be understood has no
+/// entry.
+#[derive(Debug, Default)]
+pub struct Index {
+    pub definitions: Vec<Definition>,
+    /// In the order of their places; none overlap.
+    pub uses: Vec<Use>,
+    /// What the name could be that is at the place that was asked about, each once.
+    pub offers: Vec<Offer>,
+    /// In the order of files and lines.
+    pub diagnostics: Vec<Diagnostic>,
+    pub(crate) asked: Option<(u16, u32)>,
+}
+
+/// A name where it is used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use {
+    pub span: Span,
+    pub meaning: Meaning,
+}
+
+/// A name that could be written at a place, and what it means there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    pub name: String,
+    pub meaning: Meaning,
+}
+
+impl Index {
+    /// Reads what the files declare.
+    pub(crate) fn declare(&mut self, files: &[ast::File<'_>]) {
+        self.definitions = outline::definitions(files);
+    }
+
+    /// Adds what checking has found out.
+    pub(crate) fn add(&mut self, recorder: Recorder) {
+        let known: FxHashMap<Span, DefId> = self.ids().map(|(id, it)| (it.name, id)).collect();
+        let mut uses: FxHashMap<Span, Meaning> = self.uses.drain(..).map(|it| (it.span, it.meaning)).collect();
+        let (found, offered) = recorder.settled();
+        for (span, target) in found {
+            if !known.contains_key(&span)
+                && let Some(meaning) = target.meaning(|declared| known.get(&declared).copied())
+            {
+                uses.insert(span, meaning);
+            }
+        }
+        for (name, target) in offered {
+            let is_new = !self.offers.iter().any(|it| it.name.eq_ignore_ascii_case(&name));
+            if let (true, Some(meaning)) = (is_new, target.meaning(|declared| known.get(&declared).copied())) {
+                self.offers.push(Offer { name, meaning });
+            }
+        }
+        self.uses = uses.into_iter().map(|(span, meaning)| Use { span, meaning }).collect();
+        self.uses.sort_unstable_by_key(|it| (it.span.file, it.span.start, it.span.end));
+    }
+
+    pub fn get(&self, id: DefId) -> &Definition {
+        &self.definitions[id.0]
+    }
+
+    pub fn ids(&self) -> impl Iterator<Item = (DefId, &Definition)> {
+        self.definitions.iter().enumerate().map(|(at, it)| (DefId(at), it))
+    }
+
+    /// What the name at a place means, and the name's extent: a declaration's own name means that.
+    pub fn at(&self, file: u16, offset: u32) -> Option<(Span, Meaning)> {
+        let holds = |it: Span| it.file == file && it.start <= offset && offset <= it.end;
+        let after = self.uses.partition_point(|it| (it.span.file, it.span.start) <= (file, offset));
+        let used = self.uses[..after].last().filter(|it| holds(it.span)).map(|it| (it.span, it.meaning.clone()));
+        used.or_else(|| self.ids().find(|it| holds(it.1.name)).map(|(id, it)| (it.name, Meaning::Definition(id))))
+    }
+
+    /// Where a declaration's name is used.
+    pub fn uses_of(&self, id: DefId) -> impl Iterator<Item = Span> {
+        self.uses.iter().filter(move |it| it.meaning == Meaning::Definition(id)).map(|it| it.span)
+    }
+
+    /// What a declaration holds: the variables of a POU, the members of a structure.
+    pub fn parts_of(&self, id: DefId) -> impl Iterator<Item = (DefId, &Definition)> {
+        self.ids().filter(move |it| it.1.owner == Some(id))
+    }
+}

@@ -1,0 +1,79 @@
+//! What names are noted to mean, for an editor.
+
+use super::declarations::Declarations;
+use crate::ast::Name;
+use crate::index::recorder::Target;
+use crate::names::{Found, Meaning, Sense};
+use staunch_ir::{BlockId, EnumId, StructId, Type};
+
+impl<'s> Declarations<'s> {
+    /// Notes what a path means that was looked up: its last name, and the names before it.
+    pub fn note_path(&self, path: &[Name<'s>], found: &Found) {
+        let Some((last, around)) = path.split_last().filter(|_| self.log.index.is_some()) else { return };
+        (1..=around.len()).for_each(|end| self.note_prefix(&path[..end]));
+        match found {
+            Found::One(Meaning::Declared(entry)) => self.log.note_declared(last.span, self.span_of(*entry)),
+            Found::One(Meaning::Enumerator(slot)) => {
+                if let Some(Type::Enum(id)) = self.type_of_slot(*slot) {
+                    self.note_enumerator(*last, id);
+                }
+            }
+            Found::One(Meaning::Block(block)) => self.log.note(last.span, || Target::Block(*block)),
+            Found::One(Meaning::Instruction) => self.log.note(last.span, || Target::Instruction),
+            Found::One(Meaning::Function) => self.log.note(last.span, || Target::Function),
+            Found::Nothing | Found::Several(_) => {}
+        }
+    }
+
+    /// Notes what leads to a name: a namespace, a list, an enumeration, or a word that stands for a library.
+    fn note_prefix(&self, path: &[Name<'s>]) {
+        let Some(last) = path.last() else { return };
+        let site = self.site(last.span);
+        if let Some(space) = self.names.space_at(site, path) {
+            let name = self.names.name_of(space).to_owned();
+            return self.log.note(last.span, || Target::Namespace(name));
+        }
+        match self.lookup(path, Sense::Type) {
+            found @ Found::One(Meaning::Declared(_)) => self.note_path(&path[path.len() - 1..], &found),
+            Found::One(_) | Found::Nothing | Found::Several(_) => self.log.note(last.span, || Target::Word),
+        }
+    }
+
+    pub(super) fn type_of_slot(&self, slot: usize) -> Option<Type> {
+        match &self.types[slot].slot {
+            super::declarations::Slot::Done(resolved) => Some(resolved.ty),
+            super::declarations::Slot::Open | super::declarations::Slot::Failed => None,
+        }
+    }
+
+    pub fn note_enumerator(&self, name: Name<'s>, id: EnumId) {
+        if let Some(declared) = self.log.index.as_ref().and_then(|it| it.enumerator(id, name.text)) {
+            self.log.note_declared(name.span, declared);
+        }
+    }
+
+    /// Notes a member of a structure, or a variable of an instance.
+    pub fn note_member(&self, name: Name<'s>, id: StructId) {
+        if self.log.index.is_none() {
+            return;
+        }
+        let structure = self.program.structure(id);
+        let own = self.field_named(id, name.text).map(|it| structure.fields[it.index()].location);
+        let shared = || structure.overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name.text));
+        if let Some(location) = own.or_else(|| Some(shared()?.location)) {
+            self.log.note_declared(name.span, self.log.name_at(location));
+        }
+    }
+
+    pub fn note_pin(&self, name: Name<'s>, block: BlockId) {
+        let pins = block.info().pins;
+        if let Some(at) = pins.iter().position(|it| it.name.eq_ignore_ascii_case(name.text)) {
+            self.log.note(name.span, || Target::Pin(block, at));
+        }
+    }
+
+    /// Notes the POU or routine in a slot.
+    pub fn note_pou(&self, name: Name<'s>, slot: usize) {
+        self.log.note_declared(name.span, self.pous[slot].ast.name.span);
+    }
+}
