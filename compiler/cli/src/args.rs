@@ -41,6 +41,8 @@ pub enum Command {
     Convert(Convert),
     /// Lay out sources: indentation, spaces, columns of declarations, the letters of keywords
     Fmt(Fmt),
+    /// Answer an editor that speaks the language server protocol, on standard input and output
+    Lsp(Lsp),
     /// Print the long text of a diagnostic, or the list of all
     Explain(Explain),
     /// Print completions for a shell
@@ -553,6 +555,13 @@ impl Compare {
     pub fn picture(&self) -> Option<&PathBuf> {
         self.trace.as_ref().and_then(Option::as_ref)
     }
+}
+
+#[derive(Clone, Debug, Args)]
+pub struct Lsp {
+    /// What editors add when they start a server: it always speaks on standard input and output
+    #[arg(long, hide = true)]
+    pub stdio: bool,
 }
 
 #[derive(Clone, Debug, Args)]

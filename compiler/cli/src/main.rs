@@ -31,6 +31,7 @@ mod convert;
 
 mod debug;
 
+mod lsp;
 mod run;
 mod test;
 
@@ -117,6 +118,7 @@ fn dispatch(cli: Cli) -> u8 {
             Session::start_to_build(&cli.common, &it.files).and_then(|session| convert::convert(&session, it))
         }
         Command::Fmt(it) => fmt::fmt(&cli.common, it),
+        Command::Lsp(_) => lsp::lsp(&cli.common),
         Command::New(it) => new::new(it, &cli.common),
         Command::Check(it) => Session::check(&cli.common, it),
         Command::Build(it) => {

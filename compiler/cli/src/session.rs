@@ -474,7 +474,7 @@ pub fn named(files: &Files) -> Result<(Project, Vec<PathBuf>), String> {
 }
 
 /// Paths of the project file, as seen from the current folder.
-fn seen(project: &Project, key: &str, paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
+pub fn seen(project: &Project, key: &str, paths: &[PathBuf]) -> Result<Vec<PathBuf>, String> {
     if paths.is_empty() {
         return Ok(Vec::new());
     }
@@ -502,7 +502,7 @@ fn are(names: &[String]) -> String {
     }
 }
 
-fn options(common: &Common, project: &Project) -> Result<Options, String> {
+pub fn options(common: &Common, project: &Project) -> Result<Options, String> {
     let dialect = match common.dialect {
         Some(dialect) => dialect,
         None => project.dialect()?.unwrap_or_default(),
@@ -536,7 +536,7 @@ fn summary(errors: usize, warnings: usize) -> String {
 }
 
 /// What the project file and `-W`, `-D`, `-A` say of lints; the command line comes later.
-fn levels(common: &Common, project: &Project) -> Result<Levels, String> {
+pub fn levels(common: &Common, project: &Project) -> Result<Levels, String> {
     let mut levels = project.levels()?;
     for (level, names) in [(Level::Warn, &common.warn), (Level::Deny, &common.deny), (Level::Allow, &common.allow)] {
         levels.add(level, names.iter().map(String::as_str))?;

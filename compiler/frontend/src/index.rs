@@ -10,7 +10,7 @@ pub use recorder::Meaning;
 
 use crate::source::Span;
 use crate::{Diagnostic, ast};
-use recorder::Recorder;
+use recorder::{Offered, Recorder};
 use rustc_hash::FxHashMap;
 
 /// A program as an editor asks about it. It is there for sources with mistakes, too: what could not be understood has no
@@ -39,6 +39,8 @@ pub struct Use {
 pub struct Offer {
     pub name: String,
     pub meaning: Meaning,
+    /// It is of what its place asks for, and not just visible there.
+    pub is_expected: bool,
 }
 
 impl Index {
@@ -59,12 +61,16 @@ impl Index {
                 uses.insert(span, meaning);
             }
         }
-        for (name, target) in offered {
-            let is_new = !self.offers.iter().any(|it| it.name.eq_ignore_ascii_case(&name));
-            if let (true, Some(meaning)) = (is_new, target.meaning(|declared| known.get(&declared).copied())) {
-                self.offers.push(Offer { name, meaning });
+        let mut places: FxHashMap<String, usize> = FxHashMap::default();
+        for Offered { name, means, is_expected } in offered {
+            let Some(meaning) = means.meaning(|declared| known.get(&declared).copied()) else { continue };
+            let place = *places.entry(name.to_ascii_uppercase()).or_insert(self.offers.len());
+            match self.offers.get_mut(place) {
+                Some(it) => it.is_expected |= is_expected,
+                None => self.offers.push(Offer { name, meaning, is_expected }),
             }
         }
+        self.offers.sort_by_key(|it| !it.is_expected);
         self.uses = uses.into_iter().map(|(span, meaning)| Use { span, meaning }).collect();
         self.uses.sort_unstable_by_key(|it| (it.span.file, it.span.start, it.span.end));
     }
@@ -83,6 +89,12 @@ impl Index {
         let after = self.uses.partition_point(|it| (it.span.file, it.span.start) <= (file, offset));
         let used = self.uses[..after].last().filter(|it| holds(it.span)).map(|it| (it.span, it.meaning.clone()));
         used.or_else(|| self.ids().find(|it| holds(it.1.name)).map(|(id, it)| (it.name, Meaning::Definition(id))))
+    }
+
+    /// The names that are used in a part of a text, in their order.
+    pub fn uses_in(&self, span: Span) -> &[Use] {
+        let before = |offset: u32| self.uses.partition_point(|it| (it.span.file, it.span.start) < (span.file, offset));
+        &self.uses[before(span.start)..before(span.end)]
     }
 
     /// Where a declaration's name is used.

@@ -1,7 +1,7 @@
 //! The sources, and what is reported of them.
 
 use crate::dialect::Dialect;
-use crate::index::recorder::{Recorder, Target};
+use crate::index::recorder::{Named, Offered, Recorder};
 use crate::options::Options;
 use crate::{Code, Diagnostic, Fix, Severity, Sources, Span};
 use rustc_hash::FxHashSet;
@@ -68,7 +68,7 @@ impl<'s> Log<'s> {
     }
 
     /// Notes what a name means, where that is asked for.
-    pub fn note(&self, name: Span, target: impl FnOnce() -> Target) {
+    pub fn note(&self, name: Span, target: impl FnOnce() -> Named) {
         if let Some(index) = &self.index {
             index.note(name, target());
         }
@@ -76,7 +76,7 @@ impl<'s> Log<'s> {
 
     /// Notes the declaration that a name means.
     pub fn note_declared(&self, name: Span, declared: Span) {
-        self.note(name, || Target::Declared(declared));
+        self.note(name, || Named::Declared(declared));
     }
 
     /// Whether an editor asks what a name could be that is here.
@@ -85,9 +85,16 @@ impl<'s> Log<'s> {
     }
 
     /// A name that could be where an editor asks.
-    pub fn offer(&self, name: impl Into<String>, target: Target) {
+    pub fn offer(&self, name: impl Into<String>, means: Named) {
         if let Some(index) = &self.index {
-            index.offer(name, target);
+            index.offer(Offered { name: name.into(), means, is_expected: false });
+        }
+    }
+
+    /// The same for one of what its place asks for.
+    pub fn offer_expected(&self, name: impl Into<String>, means: Named) {
+        if let Some(index) = &self.index {
+            index.offer(Offered { name: name.into(), means, is_expected: true });
         }
     }
 

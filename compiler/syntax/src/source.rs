@@ -536,6 +536,13 @@ impl Sources {
         self.files.push(source);
     }
 
+    /// Reads a file anew: an editor has another text of it.
+    pub fn replace(&mut self, file: u16, text: &str) {
+        let file = &mut self.files[usize::from(file)];
+        let new = Source::decode(file.path.clone(), text.as_bytes());
+        *file = Source { library: file.library.clone(), is_bundled: file.is_bundled, ..new };
+    }
+
     pub fn files(&self) -> &[Source] {
         &self.files
     }

@@ -5,6 +5,7 @@ use crate::expr::checker::Checker;
 use crate::expr::operand::Operand;
 use crate::expr::operator::{Sides, beside};
 use crate::expr::test_words::WORDS;
+use crate::index::recorder::Named;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::testing::{Assertion, CALLS, CLOCK, FAILED, MOCKED};
 use crate::types::signature::pin_place;
@@ -71,6 +72,7 @@ impl<'s> Checker<'_, 's> {
             self.outside_of_a_test(*name);
             return Some(());
         }
+        self.decl.log.note(name.span, || Named::Function);
         let Some(given) = self.positional(*name, arguments) else { return Some(()) };
         let made = match given.split_at_checked(count) {
             Some((values, [])) => self.test_step(word, values, None, span),

@@ -3,6 +3,7 @@
 
 use super::assertion::Claim;
 use crate::expr::checker::Checker;
+use crate::index::recorder::Named;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::Key;
 use crate::testing::exchange;
@@ -59,6 +60,9 @@ impl<'s> Checker<'_, 's> {
             self.left_out.get_or_insert(span);
             return Some(());
         };
+        if let Some(path) = callee.path() {
+            self.decl.note_path(&path, &Found::One(Meaning::Declared(Entry::Pou(slot))));
+        }
         let name = self.decl.pous[slot].ast.name;
         let source = self.decl.log.sources.get(name.span.file);
         if !LIBRARIES.iter().any(|it| source.is_unit(it)) {
@@ -205,6 +209,7 @@ impl<'s> Checker<'_, 's> {
                         self.report(Diagnostic::new(Code::E0301, word.span, message).label(names));
                         return None;
                     };
+                    self.decl.log.note(word.span, || Named::Parameter);
                     (at, value)
                 }
                 ArgumentKind::Output { .. } => return self.wrong_arguments(name, &parameters, span),

@@ -21,9 +21,8 @@ impl<'s> Checker<'_, 's> {
         let Some(first) = labels.first().copied() else { return };
         self.check_labels(&labels);
         let next = self.temporary("next", NUMBER);
-        let names = labels.iter().map(|it| Key(it.text)).collect();
         self.jumps.push(Jumps {
-            labels: names,
+            labels,
             next: next.clone(),
             loops: self.loops,
             is_used: false,
@@ -94,11 +93,12 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         let found = self.jumps.iter().enumerate().rev().find_map(|(at, it)| {
-            let number = it.labels.iter().position(|label| *label == Key(name.text))?;
+            let number = it.labels.iter().position(|label| Key(label.text) == Key(name.text))?;
+            self.decl.log.note_declared(name.span, it.labels[number].span);
             Some((at, number + 1))
         });
         let Some((list, number)) = found else {
-            let labels = self.jumps.iter().flat_map(|it| &it.labels).map(|it| it.0);
+            let labels = self.jumps.iter().flat_map(|it| &it.labels).map(|it| it.text);
             let error = Diagnostic::new(
                 Code::E0514,
                 name.span,

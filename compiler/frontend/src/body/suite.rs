@@ -7,6 +7,7 @@ use crate::expr::any_input::class_of;
 use crate::expr::checker::Checker;
 use crate::expr::method::is_this;
 use crate::expr::operand::Operand;
+use crate::index::recorder::Named;
 use crate::inherit::is_super;
 use crate::testing::Assertion;
 use crate::testing::suite::{FAILS, LIBRARY};
@@ -156,6 +157,7 @@ impl<'s> Checker<'_, 's> {
     /// The place of a parameter.
     fn place_of_parameter(&mut self, name: ast::Name<'s>, parameters: &[&str], word: ast::Name<'s>) -> Option<usize> {
         let at = parameters.iter().chain(&["Message"]).position(|it| it.eq_ignore_ascii_case(word.text));
+        self.decl.log.note(word.span, || Named::Parameter);
         if at.is_none() {
             let message = format!("`{}` has no parameter `{}`", name.text, word.text);
             let names = format!("its parameters are {}, Message", parameters.join(", "));

@@ -16,8 +16,10 @@ impl<'s> Declarations<'s> {
             regions.push(self.names.add_file(file, &lists));
         }
         for (region, id) in files.iter().zip(&regions).flat_map(|(file, ids)| file.regions.iter().zip(ids)) {
+            self.note_space(&region.path);
             for path in &region.uses {
                 let Some(last) = path.last() else { continue };
+                self.note_space(path);
                 let site = self.site(last.span);
                 if !self.names.use_space(*id, site, path) {
                     self.report_unknown_namespace(path);

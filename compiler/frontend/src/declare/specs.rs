@@ -1,12 +1,12 @@
 //! Type specifications to types.
 
 use super::run::configurations;
-use crate::index::recorder::Target;
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
 use crate::dialect::rules::InitialValues;
 use crate::dialect::{self, Dialect, missing};
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
+use crate::index::recorder::Named;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::prelude;
 use crate::spelling::{Key, nearest};
@@ -290,6 +290,7 @@ impl<'s> Declarations<'s> {
     }
 
     fn reference_to_named(&mut self, kind: RefKind, path: &'s [ast::Name<'s>], span: Span) -> ReferenceId {
+        self.note_path(path, &self.lookup(path, Sense::Type));
         let named = (kind, path.iter().map(|it| Key(it.text)).collect::<Vec<_>>());
         let alike = self.table.references_to.get(&named).into_iter().flatten();
         let mut alike = alike.map(|at| self.table.pending_references[*at]);
@@ -395,7 +396,7 @@ impl<'s> Declarations<'s> {
         self.offer_types(name);
         let rules = self.dialect(name.span).rules();
         if let Some(elementary) = rules.named(name.text) {
-            self.log.note(name.span, || Target::Elementary(elementary));
+            self.log.note(name.span, || Named::Elementary(elementary));
             let initial = scalar_initial(rules.first_value(elementary));
             return Some(Resolved { ty: Type::Elementary(elementary), initial });
         }
@@ -411,6 +412,7 @@ impl<'s> Declarations<'s> {
             }
             Found::One(_) | Found::Nothing => {
                 if let Some(class) = class_named(name.text) {
+                    self.log.note(name.span, || Named::Word);
                     return self.generic_type(class, name);
                 }
                 self.report_unknown_type(name);
@@ -721,7 +723,10 @@ impl<'s> Declarations<'s> {
         let base = match base {
             None => Elementary::Int,
             Some(name) => match Elementary::named(name.text).filter(|it| it.repr().is_integer() && it.is_integral()) {
-                Some(base) => base,
+                Some(base) => {
+                    self.log.note(name.span, || Named::Elementary(base));
+                    base
+                }
                 None => {
                     self.error(Code::E0407, name.span, "the base of an enumeration is an integer or bit-string type");
                     return None;

@@ -1,11 +1,11 @@
 //! Which argument goes to which parameter.
 
 use super::checker::Checker;
-use crate::index::recorder::Target;
+use crate::index::recorder::Named;
 use crate::names::Sense;
+use crate::types::signature::Formal;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast};
-use crate::types::signature::Formal;
 use staunch_ir::{BlockId, Section};
 use staunch_runtime::Pin;
 
@@ -27,22 +27,22 @@ pub(crate) struct Parameter<'n> {
     pub name: &'n str,
     pub section: Section,
     /// What its name means where an argument has it.
-    pub meaning: Target,
+    pub meaning: Named,
 }
 
 impl<'n> Parameter<'n> {
     /// Of a standard function, or of an instruction.
     pub fn of_library(name: &'n str, section: Section) -> Self {
-        Self { name, section, meaning: Target::Parameter }
+        Self { name, section, meaning: Named::Parameter }
     }
 
     pub fn of_pin(block: BlockId, pin: &'n Pin, section: Section) -> Self {
         let at = block.info().pins.iter().position(|it| it.name == pin.name);
-        Self { name: pin.name, section, meaning: at.map_or(Target::Parameter, |at| Target::Pin(block, at)) }
+        Self { name: pin.name, section, meaning: at.map_or(Named::Parameter, |at| Named::Pin(block, at)) }
     }
 
     pub fn of_formal(formal: &Formal<'n>) -> Self {
-        Self { name: formal.name.text, section: formal.section, meaning: Target::Declared(formal.name.span) }
+        Self { name: formal.name.text, section: formal.section, meaning: Named::Declared(formal.name.span) }
     }
 }
 
@@ -157,7 +157,7 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         for it in parameters.iter().filter(|it| !names.iter().any(|name| name.text.eq_ignore_ascii_case(it.name))) {
-            self.decl.log.offer(it.name, it.meaning.clone());
+            self.decl.log.offer_expected(it.name, it.meaning.clone());
         }
     }
 

@@ -8,6 +8,7 @@ use super::order::Held;
 use super::place::{Access, Found};
 use crate::diagnostic::wording::article;
 use crate::dialect::Dialect;
+use crate::index::recorder::Named;
 use crate::types::signature::{Formal, Target, pin_place};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Argument, BlockId, Conversion, Expr, FieldId, Place, Root, RoutineId, Section, StatementKind, Type};
@@ -72,6 +73,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         if info.family == Family::S7 {
+            self.decl.log.note(name.span, || Named::Block(id));
             return Some(counter.as_ref());
         }
         (self.decl.log.options.moved_from? == Dialect::Siemens).then_some(())?;
@@ -304,8 +306,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Vec<Given<'a, 's>>> {
         let owner = self.decl.pous[slot].ast.name.text;
-        let parameters: Vec<_> =
-            formals.iter().map(|it| Parameter::of_formal(it)).collect();
+        let parameters: Vec<_> = formals.iter().map(|it| Parameter::of_formal(it)).collect();
         let is_known = |it: &ast::Argument<'s>| match &it.kind {
             ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
                 formals.iter().any(|it| it.name.text.eq_ignore_ascii_case(name.text))

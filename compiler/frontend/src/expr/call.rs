@@ -7,6 +7,7 @@ use super::generic_call::Called;
 use super::operand::Operand;
 use crate::diagnostic::wording::{list, list_of_all};
 use crate::dialect::{Dialect, missing};
+use crate::index::recorder::Named;
 use crate::names::functions;
 use crate::spelling::nearest;
 use crate::testing::suite::LIBRARY;
@@ -66,10 +67,20 @@ impl<'s> Checker<'_, 's> {
         if self.calls_own_routine(callee) {
             return None;
         }
-        self.value_of_name(callee, arguments, span)
+        let value = self
+            .value_of_name(callee, arguments, span)
             .or_else(|| self.memory_function(callee, arguments, span))
             .or_else(|| self.query(callee, arguments, span))
-            .or_else(|| self.new_object(callee, arguments, span))
+            .or_else(|| self.new_object(callee, arguments, span));
+        self.note_known(callee, value.is_some());
+        value
+    }
+
+    /// Notes a name that the compiler knows as that of a function.
+    fn note_known(&self, callee: &ast::Expr<'s>, is_known: bool) {
+        if let (true, Ast::Name(name)) = (is_known, &callee.kind) {
+            self.decl.log.note(name.span, || Named::Function);
+        }
     }
 
     /// Whether a statement is a call of a name that is known here, and was checked.
@@ -82,6 +93,7 @@ impl<'s> Checker<'_, 's> {
             || self.pool_statement(callee, arguments, span).is_some()
             || self.logix_statement(callee, arguments, span)
         {
+            self.note_known(callee, true);
             return true;
         }
         let Ast::Name(name) = &callee.kind else { return false };
@@ -89,6 +101,7 @@ impl<'s> Checker<'_, 's> {
         if matches!(value, Some(Some(_))) {
             self.report_unused(*name, span);
         }
+        self.note_known(callee, value.is_some());
         value.is_some()
     }
 

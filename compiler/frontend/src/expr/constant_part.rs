@@ -43,6 +43,7 @@ impl<'s> Checker<'_, 's> {
             Ast::Member(_, name) => {
                 let Type::Struct(id) = ty else { return None };
                 let field = self.decl.field_named(id, name.text)?;
+                self.decl.note_member(*name, id);
                 value = value.part(field.index());
                 ty = self.decl.program.structure(id).fields[field.index()].ty;
             }

@@ -8,6 +8,7 @@ use super::late_target::{Finding, LateTarget};
 use super::order::Held;
 use super::place::Found;
 use crate::dialect::rules::{Part, Use};
+use crate::index::recorder::Named;
 use crate::types::signature::{Formal, Signature, Target};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::ArgumentKind;
@@ -59,6 +60,11 @@ impl<'s> Checker<'_, 's> {
         let tells = !owns.en && owns.tells && !self.decl.dialect(callee.span).declares_plain_enable();
         let mut rest = Vec::new();
         for argument in arguments {
+            if let (true, ArgumentKind::Input(name, _) | ArgumentKind::Output { name, .. }) =
+                (is_en(argument), &argument.kind)
+            {
+                self.decl.log.note(name.span, || Named::Parameter);
+            }
             match &argument.kind {
                 ArgumentKind::Input(_, value) if is_en(argument) && !owns.en && enable.en.is_none() => {
                     enable.en = Some(value);

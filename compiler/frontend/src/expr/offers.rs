@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use crate::ast;
-use crate::index::recorder::Target;
+use crate::index::recorder::Named;
 use crate::names::Sense;
 use staunch_ir::{BlockId, EnumId, StructId, Type};
 use staunch_runtime::{Direction, Family};
@@ -17,13 +17,13 @@ impl<'s> Checker<'_, 's> {
         let scopes = std::iter::successors(Some(&self.scope), |it| it.outer.as_ref());
         for scope in scopes.flat_map(|it| [Some(it), it.constants.as_ref()]).flatten() {
             let own = scope.variables.iter().filter(|it| !it.name.text.starts_with("__"));
-            own.for_each(|it| log.offer(it.name.text, Target::Declared(it.name.span)));
+            own.for_each(|it| log.offer(it.name.text, Named::Declared(it.name.span)));
         }
         if let Some(slot) = self.slot {
             self.offer_routines(self.decl.home(slot));
             let pou = self.decl.pous[slot].ast;
             if pou.kind.is_function() {
-                log.offer(pou.name.text, Target::Declared(pou.name.span));
+                log.offer(pou.name.text, Named::Declared(pou.name.span));
             }
         }
         self.decl.offer_visible(name, sense);
@@ -40,7 +40,7 @@ impl<'s> Checker<'_, 's> {
             if let Some((slot, _)) = all.into_iter().flatten().next() {
                 let declared = self.decl.pous[slot].ast.name;
                 if !declared.text.starts_with("__") {
-                    self.decl.log.offer(key.0, Target::Declared(declared.span));
+                    self.decl.log.offer(key.0, Named::Declared(declared.span));
                 }
             }
         }
@@ -74,14 +74,14 @@ impl<'s> Checker<'_, 's> {
             let own = self.decl.field_named(id, name).map(|it| structure.fields[it.index()].location);
             let shared = || structure.overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name));
             if let Some(location) = own.or_else(|| Some(shared()?.location)) {
-                self.decl.log.offer(name, Target::Declared(self.decl.log.name_at(location)));
+                self.decl.log.offer_expected(name, Named::Declared(self.decl.log.name_at(location)));
             }
         }
     }
 
     fn offer_pins(&self, id: BlockId) {
         for (at, pin) in id.info().pins.iter().enumerate().filter(|it| it.1.direction != Direction::Memory) {
-            self.decl.log.offer(pin.name, Target::Pin(id, at));
+            self.decl.log.offer_expected(pin.name, Named::Pin(id, at));
         }
     }
 
@@ -103,7 +103,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         let rules = self.dialect(name.span).rules();
         for elementary in staunch_ir::Elementary::ALL {
             if let Some(known) = rules.named(elementary.name()) {
-                self.log.offer(elementary.name(), Target::Elementary(known));
+                self.log.offer(elementary.name(), Named::Elementary(known));
             }
         }
         let family = self.dialect(name.span).family();
@@ -111,7 +111,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
             let is_own = info.family == family || info.family == Family::Iec;
             let block = BlockId::next(at);
             if is_own && crate::dialect::bare_block(self.dialect(name.span), info.name) == Some(block) {
-                self.log.offer(info.name, Target::Block(block));
+                self.log.offer(info.name, Named::Block(block));
             }
         }
     }

@@ -96,6 +96,7 @@ impl<'s> Checker<'_, 's> {
                 _ => return None,
             },
         };
+        self.decl.log.note_declared(name.span, variable.name.span);
         let Const::Scalar(value) = variable.constant_value()? else {
             let zero = self.decl.program.repr(variable.resolved.ty.read())?.zero();
             variable.used.set(true);

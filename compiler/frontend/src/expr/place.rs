@@ -4,7 +4,7 @@ use super::character::has_characters;
 use super::checker::Checker;
 use super::part::Part;
 use super::unresolved::not_constant;
-use crate::index::recorder::Target as Noted;
+use crate::index::recorder::Named;
 use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
 use crate::spelling::nearest;
@@ -569,7 +569,7 @@ impl<'s> Checker<'_, 's> {
             _ if pins[at].direction == Direction::Output && !self.is_test() => Access::Output(name),
             Access::Write | Access::Constant(_) | Access::OwnInput(_) | Access::Output(_) => Access::Write,
         };
-        self.decl.log.note(name.span, || Noted::Pin(id, at));
+        self.decl.log.note(name.span, || Named::Pin(id, at));
         let field = FieldId::next(at);
         Some(Found { place: found.place.field(field, id.pin_type(field)?), view: None, access })
     }

@@ -9,6 +9,7 @@ use super::operand::Operand;
 use super::operator::Sides;
 use super::place::{Access, Found};
 use super::unresolved::not_constant;
+use crate::index::recorder::Named;
 use crate::names::{Entry, Found as Meant, Meaning, Sense};
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
@@ -353,6 +354,7 @@ impl<'s> Checker<'_, 's> {
         if let [name] = path.as_slice()
             && let Some(elementary) = self.decl.dialect(name.span).rules().named(name.text)
         {
+            self.decl.log.note(name.span, || Named::Elementary(elementary));
             return Some(Some(Type::Elementary(elementary)));
         }
         let is_value = path.len() > 1
@@ -362,6 +364,9 @@ impl<'s> Checker<'_, 's> {
             );
         let is_declared = matches!(self.decl.lookup(&path, Sense::Type), Meant::One(Meaning::Declared(Entry::Type(_))));
         let ty = if is_value { None } else { self.decl.type_of_path(&path) };
+        if ty.is_some() {
+            self.decl.note_path(&path, &self.decl.lookup(&path, Sense::Type));
+        }
         (ty.is_some() || is_declared && !is_value).then_some(ty)
     }
 

@@ -2,8 +2,8 @@
 
 use super::definition::{DefId, Definition, DefinitionKind};
 use crate::ast::{
-    self, Configuration, File, Item, Name, Pou, PouKind, StatementKind, TypeDecl, TypeKind, TypeSpec, VarBlock, VarDecl,
-    VarKind,
+    self, Configuration, File, Item, Name, Pou, PouKind, StatementKind, TypeDecl, TypeKind, TypeSpec, VarBlock,
+    VarDecl, VarKind,
 };
 use crate::source::Span;
 

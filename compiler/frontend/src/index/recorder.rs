@@ -30,7 +30,7 @@ pub enum Meaning {
 
 /// The same while declarations have no ids: by where their names are.
 #[derive(Clone, Debug)]
-pub(crate) enum Target {
+pub(crate) enum Named {
     Declared(Span),
     Namespace(String),
     Elementary(Elementary),
@@ -42,7 +42,7 @@ pub(crate) enum Target {
     Word,
 }
 
-impl Target {
+impl Named {
     pub(super) fn meaning(self, known: impl Fn(Span) -> Option<DefId>) -> Option<Meaning> {
         Some(match self {
             Self::Declared(name) => Meaning::Definition(known(name)?),
@@ -58,14 +58,23 @@ impl Target {
     }
 }
 
+/// A name that could be where it is asked.
+#[derive(Clone, Debug)]
+pub(crate) struct Offered {
+    pub name: String,
+    pub means: Named,
+    /// It is of what its place asks for, and not just visible there.
+    pub is_expected: bool,
+}
+
 /// Notes what names mean. What is looked at more than once has the last meaning: a call's arguments are tried for each of
 /// several FUNCTIONs before one is chosen.
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
     /// Where a name is of which all is asked that it could be.
     asked: Option<(u16, u32)>,
-    offered: RefCell<Vec<(String, Target)>>,
-    uses: RefCell<FxHashMap<Span, Target>>,
+    offered: RefCell<Vec<Offered>>,
+    uses: RefCell<FxHashMap<Span, Named>>,
     /// Where enumerators are declared, by their names in capitals.
     enumerators: RefCell<FxHashMap<(EnumId, String), Span>>,
     /// What is checked is a copy: an inherited routine.
@@ -83,15 +92,15 @@ impl Recorder {
         self.asked == Some((name.file, name.start))
     }
 
-    pub fn offer(&self, name: impl Into<String>, target: Target) {
-        self.offered.borrow_mut().push((name.into(), target));
+    pub fn offer(&self, it: Offered) {
+        self.offered.borrow_mut().push(it);
     }
 
     pub fn mute(&self, is_muted: bool) {
         self.is_muted.set(is_muted);
     }
 
-    pub fn note(&self, name: Span, target: Target) {
+    pub fn note(&self, name: Span, target: Named) {
         if !self.is_muted.get() {
             self.uses.borrow_mut().insert(name, target);
         }
@@ -107,7 +116,7 @@ impl Recorder {
     }
 
     /// The names with what they mean, and what is offered.
-    pub(super) fn settled(self) -> (FxHashMap<Span, Target>, Vec<(String, Target)>) {
+    pub(super) fn settled(self) -> (FxHashMap<Span, Named>, Vec<Offered>) {
         (self.uses.into_inner(), self.offered.into_inner())
     }
 }

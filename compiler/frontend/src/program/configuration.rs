@@ -387,7 +387,10 @@ impl<'s> Declarations<'s> {
             if let Some(name) = instance.task {
                 let found = tasks.iter().find(|(it, _)| it.text.eq_ignore_ascii_case(name.text));
                 match found {
-                    Some((_, it)) => timing = *it,
+                    Some((declared, it)) => {
+                        self.log.note_declared(name.span, declared.span);
+                        timing = *it;
+                    }
                     None => self.unknown_task(name, &tasks),
                 }
             }
@@ -414,7 +417,9 @@ impl<'s> Declarations<'s> {
         runs: &FxHashMap<Span, usize>,
     ) -> Option<usize> {
         let path = [instance.namespace.as_slice(), &[instance.program]].concat();
-        let found = match self.lookup(&path, Sense::Value) {
+        let meant = self.lookup(&path, Sense::Value);
+        self.note_path(&path, &meant);
+        let found = match meant {
             Found::One(Meaning::Declared(entry)) => Some(entry),
             Found::One(_) | Found::Nothing | Found::Several(_) => None,
         };

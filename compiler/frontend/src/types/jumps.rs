@@ -1,12 +1,12 @@
 //! Labels around a statement.
 
-use crate::spelling::Key;
+use crate::ast::Name;
 use staunch_ir::Place;
 
 /// A list of statements with labels, which becomes a loop over its segments.
 #[derive(Clone, Debug)]
 pub(crate) struct Jumps<'s> {
-    pub labels: Vec<Key<'s>>,
+    pub labels: Vec<Name<'s>>,
     /// The number of the label where the list continues; 0 from its start, and while a segment runs.
     pub next: Place,
     /// How many loops of the source are around the list.

@@ -2,7 +2,7 @@
 
 use super::declarations::Declarations;
 use crate::ast::Name;
-use crate::index::recorder::Target;
+use crate::index::recorder::Named;
 use crate::names::{Found, Meaning, Sense};
 use staunch_ir::{BlockId, EnumId, StructId, Type};
 
@@ -18,10 +18,17 @@ impl<'s> Declarations<'s> {
                     self.note_enumerator(*last, id);
                 }
             }
-            Found::One(Meaning::Block(block)) => self.log.note(last.span, || Target::Block(*block)),
-            Found::One(Meaning::Instruction) => self.log.note(last.span, || Target::Instruction),
-            Found::One(Meaning::Function) => self.log.note(last.span, || Target::Function),
+            Found::One(Meaning::Block(block)) => self.log.note(last.span, || Named::Block(*block)),
+            Found::One(Meaning::Instruction) => self.log.note(last.span, || Named::Instruction),
+            Found::One(Meaning::Function) => self.log.note(last.span, || Named::Function),
             Found::Nothing | Found::Several(_) => {}
+        }
+    }
+
+    /// Notes a path that is all of namespaces.
+    pub fn note_space(&self, path: &[Name<'s>]) {
+        if self.log.index.is_some() {
+            (1..=path.len()).for_each(|end| self.note_prefix(&path[..end]));
         }
     }
 
@@ -31,11 +38,11 @@ impl<'s> Declarations<'s> {
         let site = self.site(last.span);
         if let Some(space) = self.names.space_at(site, path) {
             let name = self.names.name_of(space).to_owned();
-            return self.log.note(last.span, || Target::Namespace(name));
+            return self.log.note(last.span, || Named::Namespace(name));
         }
         match self.lookup(path, Sense::Type) {
             found @ Found::One(Meaning::Declared(_)) => self.note_path(&path[path.len() - 1..], &found),
-            Found::One(_) | Found::Nothing | Found::Several(_) => self.log.note(last.span, || Target::Word),
+            Found::One(_) | Found::Nothing | Found::Several(_) => self.log.note(last.span, || Named::Word),
         }
     }
 
@@ -68,7 +75,7 @@ impl<'s> Declarations<'s> {
     pub fn note_pin(&self, name: Name<'s>, block: BlockId) {
         let pins = block.info().pins;
         if let Some(at) = pins.iter().position(|it| it.name.eq_ignore_ascii_case(name.text)) {
-            self.log.note(name.span, || Target::Pin(block, at));
+            self.log.note(name.span, || Named::Pin(block, at));
         }
     }
 

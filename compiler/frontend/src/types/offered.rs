@@ -2,7 +2,7 @@
 
 use super::declarations::Declarations;
 use crate::ast::Name;
-use crate::index::recorder::Target;
+use crate::index::recorder::Named;
 use crate::names::{Sense, Visible, functions};
 use staunch_ir::{EnumId, Type};
 
@@ -30,8 +30,8 @@ impl<'s> Declarations<'s> {
             return;
         }
         match it {
-            Visible::Declared(entry) => self.log.offer(text, Target::Declared(self.span_of(entry))),
-            Visible::Space(space) => self.log.offer(text, Target::Namespace(self.names.name_of(space).to_owned())),
+            Visible::Declared(entry) => self.log.offer(text, Named::Declared(self.span_of(entry))),
+            Visible::Space(space) => self.log.offer(text, Named::Namespace(self.names.name_of(space).to_owned())),
         }
     }
 
@@ -43,19 +43,23 @@ impl<'s> Declarations<'s> {
     }
 
     pub fn offer_enumerators(&self, id: EnumId) {
-        self.program.enumeration(id).values.iter().for_each(|it| self.offer_enumerator(&it.name, id));
+        for it in &self.program.enumeration(id).values {
+            if let Some(declared) = self.log.index.as_ref().and_then(|index| index.enumerator(id, &it.name)) {
+                self.log.offer_expected(&it.name, Named::Declared(declared));
+            }
+        }
     }
 
     pub fn offer_enumerator(&self, name: &str, id: EnumId) {
         if let Some(declared) = self.log.index.as_ref().and_then(|it| it.enumerator(id, name)) {
-            self.log.offer(name, Target::Declared(declared));
+            self.log.offer(name, Named::Declared(declared));
         }
     }
 
     /// Offers the standard functions of the dialect.
     pub fn offer_functions(&self, name: Name<'s>) {
         for it in functions::standard_functions(self.dialect(name.span)).filter(|it| !it.name.starts_with('_')) {
-            self.log.offer(it.name, Target::Function);
+            self.log.offer(it.name, Named::Function);
         }
     }
 }

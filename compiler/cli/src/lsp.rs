@@ -1,0 +1,84 @@
+//! `lsp`: an editor's questions, answered on standard input and output.
+
+use crate::args::Common;
+use crate::{input, session};
+use staunch_build::{Project, listing};
+use staunch_frontend::{Source, Sources};
+use staunch_lsp::{Connection, Host, Unit};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub fn lsp(common: &Common) -> Result<u8, String> {
+    // What a panic says is the editor's log.
+    let (connection, threads) = Connection::stdio();
+    staunch_lsp::serve(&connection, &Disk { common })?;
+    drop(connection);
+    threads.join().map_err(|it| format!("standard output: {it}"))?;
+    Ok(0)
+}
+
+/// The files of this machine, by the rules of the other commands.
+struct Disk<'a> {
+    common: &'a Common,
+}
+
+impl Host for Disk<'_> {
+    fn unit(&self, path: &Path) -> Result<Unit, String> {
+        let folder = path.parent().unwrap_or(path);
+        let mut project = Project::find(folder)?.unwrap_or_default();
+        let libraries = session::seen(&project, "libraries", &project.libraries)?;
+        let listed = session::seen(&project, "files", &project.files)?;
+        let is_in = |arguments: &[PathBuf]| {
+            let files = input::found(arguments).unwrap_or_default();
+            files.iter().any(|it| is_same(it, path))
+        };
+        let sources = match [listed].into_iter().chain(lists_above(folder)).find(|it| !it.is_empty() && is_in(it)) {
+            Some(named) => input::read(&named, &libraries)?,
+            None => self.alone(path, &libraries)?,
+        };
+        let options = {
+            project.dialect = project.dialect.take().or_else(|| sources.dialect().map(str::to_owned));
+            session::options(self.common, &project)?
+        };
+        let here = std::env::current_dir().map_err(|it| format!("the current folder: {it}"))?;
+        let named = |it: &Source| {
+            let full = here.join(&it.path);
+            if is_same(&full, path) { path.to_owned() } else { full.canonicalize().unwrap_or(full) }
+        };
+        Ok(Unit {
+            paths: sources.files().iter().map(named).collect(),
+            sources,
+            options: staunch_frontend::Options { is_run: false, ..options },
+            levels: session::levels(self.common, &project)?,
+            layout: project.layout.clone(),
+        })
+    }
+}
+
+impl Disk<'_> {
+    /// A file that no project lists; one that is not on disk yet is empty.
+    #[allow(clippy::unused_self, reason = "it reads the disk")]
+    fn alone(&self, path: &Path, libraries: &[PathBuf]) -> Result<Sources, String> {
+        if path.exists() {
+            return input::read(&[path.to_owned()], libraries);
+        }
+        let mut sources = Sources::default();
+        sources.add(Source::decode(input::shown(path), &[]));
+        Ok(sources)
+    }
+}
+
+/// The projects of other systems in a folder and those above it, the nearest first.
+fn lists_above(folder: &Path) -> impl Iterator<Item = Vec<PathBuf>> {
+    folder.ancestors().take(8).flat_map(|folder| {
+        let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|it| it.path());
+        let is_project = |it: &PathBuf| it.extension().is_some_and(|it| it.eq_ignore_ascii_case("plcproj"));
+        let mut projects: Vec<_> = entries.filter(is_project).chain(listing::project_in(folder)).collect();
+        projects.sort();
+        projects.into_iter().map(|it| vec![it])
+    })
+}
+
+fn is_same(one: &Path, other: &Path) -> bool {
+    one == other || one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
+}

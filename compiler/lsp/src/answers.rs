@@ -1,0 +1,16 @@
+//! What the server answers: a program, and a place in it, in; values of the protocol out.
+
+pub mod actions;
+pub mod complete;
+pub mod describe;
+pub mod folds;
+pub mod hierarchy;
+pub mod hints;
+pub mod layout;
+pub mod navigate;
+pub mod problems;
+pub mod rename;
+pub mod select;
+pub mod signature;
+pub mod symbols;
+pub mod tokens;

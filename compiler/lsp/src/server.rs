@@ -1,0 +1,304 @@
+//! The messages of an editor, one after the other. What is typed comes first: a request is answered for the texts as they are when its
+//! turn comes, so that no answer is of an older one.
+
+mod capabilities;
+mod requests;
+
+use crate::answers::problems;
+use crate::host::Host;
+use crate::project::{Documents, Project};
+use crate::{place, uri};
+use gen_lsp_types::{
+    CancelParams, DidChangeTextDocumentParams, DidChangeWatchedFilesParams, DidCloseTextDocumentParams,
+    DidOpenTextDocumentParams, DidSaveTextDocumentParams, InitializeParams, LspNotificationMethod, LspRequestMethod,
+    PublishDiagnosticsParams, TextDocumentContentChangeEvent, Uri,
+};
+use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
+use serde_json::Value as Json;
+use staunch_frontend::Source;
+use std::collections::VecDeque;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How long nothing is typed before diagnostics are sent.
+const PAUSE: Duration = Duration::from_millis(60);
+
+/// Why a request has no answer.
+#[derive(Debug)]
+pub(crate) struct Refused {
+    code: ErrorCode,
+    why: String,
+}
+
+impl Refused {
+    pub fn new(code: ErrorCode, why: impl Into<String>) -> Self {
+        Self { code, why: why.into() }
+    }
+}
+
+impl From<String> for Refused {
+    fn from(why: String) -> Self {
+        Self::new(ErrorCode::RequestFailed, why)
+    }
+}
+
+/// Answers an editor until it ends the connection.
+///
+/// # Errors
+/// When the editor does not keep to the protocol, or is gone.
+pub fn serve(connection: &Connection, host: &dyn Host) -> Result<(), String> {
+    let (id, params) = connection.initialize_start().map_err(|it| it.to_string())?;
+    let _: InitializeParams = serde_json::from_value(params).map_err(|it| format!("initialize: {it}"))?;
+    let result = capabilities::initialized();
+    connection.initialize_finish(id, result).map_err(|it| it.to_string())?;
+    let mut server =
+        Server { connection, host, projects: Vec::new(), documents: Documents::default(), open: Vec::new() };
+    server.run()
+}
+
+/// A document that is open.
+#[derive(Debug)]
+struct Open {
+    uri: Uri,
+    path: PathBuf,
+    version: i32,
+    /// What was said of it is out of date.
+    is_due: bool,
+}
+
+pub(crate) struct Server<'a> {
+    connection: &'a Connection,
+    host: &'a dyn Host,
+    projects: Vec<Project>,
+    documents: Documents,
+    open: Vec<Open>,
+}
+
+impl Server<'_> {
+    fn run(&mut self) -> Result<(), String> {
+        let mut waiting: VecDeque<Request> = VecDeque::new();
+        loop {
+            let is_due = self.open.iter().any(|it| it.is_due);
+            let next = match () {
+                () if !waiting.is_empty() => self.connection.receiver.try_recv().ok(),
+                () if is_due => self.connection.receiver.recv_timeout(PAUSE).ok(),
+                () => match self.connection.receiver.recv() {
+                    Ok(message) => Some(message),
+                    Err(_) => return Ok(()),
+                },
+            };
+            match next {
+                Some(Message::Request(request)) => {
+                    if self.connection.handle_shutdown(&request).map_err(|it| it.to_string())? {
+                        return Ok(());
+                    }
+                    waiting.push_back(request);
+                }
+                Some(Message::Notification(it)) => self.notified(it, &mut waiting)?,
+                // It asks nothing of the editor that it needs.
+                Some(Message::Response(_)) => {}
+                None => match waiting.pop_front() {
+                    Some(request) => {
+                        let response = self.answered(request);
+                        self.send(Message::Response(response))?;
+                    }
+                    None => self.publish()?,
+                },
+            }
+        }
+    }
+
+    fn send(&self, message: Message) -> Result<(), String> {
+        self.connection.sender.send(message).map_err(|_| "the editor is gone".to_owned())
+    }
+
+    /// A mistake in one answer must not end the others.
+    fn answered(&mut self, request: Request) -> Response {
+        let Request { id, method, params } = request;
+        let answer = catch_unwind(AssertUnwindSafe(|| self.answer(LspRequestMethod::from(method.as_str()), params)));
+        match answer {
+            Ok(Ok(result)) => Response::new_ok(id, result),
+            Ok(Err(Refused { code, why })) => error(id, code, why),
+            Err(_) => {
+                self.projects.iter_mut().for_each(Project::forget);
+                error(id, ErrorCode::InternalError, format!("{method}: a mistake of the server's own"))
+            }
+        }
+    }
+
+    fn notified(&mut self, it: Notification, waiting: &mut VecDeque<Request>) -> Result<(), String> {
+        match LspNotificationMethod::from(it.method.as_str()) {
+            LspNotificationMethod::TextDocumentDidOpen => {
+                if let Some(params) = read::<DidOpenTextDocumentParams>(it.params) {
+                    let document = params.text_document;
+                    self.opened(document.uri, document.version, document.text);
+                }
+            }
+            LspNotificationMethod::TextDocumentDidChange => {
+                if let Some(params) = read::<DidChangeTextDocumentParams>(it.params) {
+                    self.changed(params);
+                }
+            }
+            LspNotificationMethod::TextDocumentDidClose => {
+                if let Some(params) = read::<DidCloseTextDocumentParams>(it.params) {
+                    self.closed(&params.text_document.uri)?;
+                }
+            }
+            LspNotificationMethod::TextDocumentDidSave => {
+                if let Some(params) = read::<DidSaveTextDocumentParams>(it.params) {
+                    self.reread(&[params.text_document.uri]);
+                }
+            }
+            LspNotificationMethod::WorkspaceDidChangeWatchedFiles => {
+                if let Some(params) = read::<DidChangeWatchedFilesParams>(it.params) {
+                    let changed: Vec<_> = params.changes.into_iter().map(|it| it.uri).collect();
+                    self.reread(&changed);
+                }
+            }
+            LspNotificationMethod::CancelRequest => {
+                if let Some(params) = read::<CancelParams>(it.params) {
+                    let id = match params.id {
+                        gen_lsp_types::Id::Int(it) => RequestId::from(it),
+                        gen_lsp_types::Id::String(it) => RequestId::from(it),
+                    };
+                    if let Some(at) = waiting.iter().position(|it| it.id == id) {
+                        waiting.remove(at);
+                        let why = "it is not wanted any more".to_owned();
+                        self.send(Message::Response(error(id, ErrorCode::RequestCanceled, why)))?;
+                    }
+                }
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn opened(&mut self, uri: Uri, version: i32, text: String) {
+        let Some(path) = uri::path(&uri) else { return };
+        self.documents.insert(path.clone(), text);
+        self.open.retain(|it| it.path != path);
+        self.open.push(Open { uri, path: path.clone(), version, is_due: true });
+        match self.projects.iter_mut().find(|it| it.has(&path)) {
+            Some(project) => project.forget(),
+            None => _ = self.project_of(&path),
+        }
+        self.all_are_due(&path);
+    }
+
+    fn changed(&mut self, params: DidChangeTextDocumentParams) {
+        let Some(path) = uri::path(&params.text_document.text_document_identifier.uri) else { return };
+        let Some(text) = self.documents.get_mut(&path) else { return };
+        for change in params.content_changes {
+            match change {
+                TextDocumentContentChangeEvent::TextDocumentContentChangePartial(it) => {
+                    let document = Source::new("", std::mem::take(text));
+                    let at = |it| usize::try_from(place::offset(&document, it)).unwrap_or(usize::MAX);
+                    let (start, end) = (at(it.range.start), at(it.range.end));
+                    *text = document.text;
+                    text.replace_range(start..end.max(start), &it.text);
+                }
+                TextDocumentContentChangeEvent::TextDocumentContentChangeWholeDocument(it) => *text = it.text,
+            }
+        }
+        if let Some(open) = self.open.iter_mut().find(|it| it.path == path) {
+            open.version = params.text_document.version;
+        }
+        self.all_are_due(&path);
+    }
+
+    /// What a text changes is known of all files of its project anew.
+    fn all_are_due(&mut self, path: &Path) {
+        for project in self.projects.iter_mut().filter(|it| it.has(path)) {
+            project.forget();
+            self.open.iter_mut().filter(|it| project.has(&it.path)).for_each(|it| it.is_due = true);
+        }
+    }
+
+    fn closed(&mut self, uri: &Uri) -> Result<(), String> {
+        let Some(path) = uri::path(uri) else { return Ok(()) };
+        self.documents.remove(&path);
+        self.open.retain(|it| it.path != path);
+        self.all_are_due(&path);
+        self.projects.retain(|it| self.open.iter().any(|open| it.has(&open.path)));
+        self.publish_one(uri.clone(), None, Vec::new())
+    }
+
+    /// Files have changed on disk: their projects are read again, and those that list other files now.
+    fn reread(&mut self, changed: &[Uri]) {
+        let paths: Vec<_> = changed.iter().filter_map(uri::path).collect();
+        let is_text = |path: &PathBuf| self.projects.iter().any(|it| it.has(path));
+        if paths.iter().all(|it| is_text(it) && self.documents.contains_key(it)) {
+            // What the editor has was written.
+            return;
+        }
+        self.projects.clear();
+        let open: Vec<_> = self.open.iter().map(|it| it.path.clone()).collect();
+        for path in open {
+            let _ = self.project_of(&path);
+        }
+        self.open.iter_mut().for_each(|it| it.is_due = true);
+    }
+
+    /// The project of a file, which is read where it is not known.
+    pub fn project_of(&mut self, path: &Path) -> Result<usize, String> {
+        if let Some(known) = self.projects.iter().position(|it| it.has(path)) {
+            return Ok(known);
+        }
+        let unit = self.host.unit(path)?;
+        if !unit.paths.iter().any(|it| it == path) {
+            return Err(format!("{} is not a source of its project", path.display()));
+        }
+        self.projects.push(Project::new(unit));
+        Ok(self.projects.len() - 1)
+    }
+
+    /// Says what there is to say of the open documents of which it is not known.
+    fn publish(&mut self) -> Result<(), String> {
+        let due: Vec<_> = self.open.iter().filter(|it| it.is_due).map(|it| it.path.clone()).collect();
+        for path in due {
+            let found = catch_unwind(AssertUnwindSafe(|| self.problems(&path))).unwrap_or_default();
+            let Some(open) = self.open.iter_mut().find(|it| it.path == path) else { continue };
+            open.is_due = false;
+            let (uri, version) = (open.uri.clone(), open.version);
+            self.publish_one(uri, Some(version), found)?;
+        }
+        Ok(())
+    }
+
+    /// What there is to say of a file; what is wrong with its project, at its beginning.
+    pub fn problems(&mut self, path: &Path) -> Vec<gen_lsp_types::Diagnostic> {
+        let project = match self.project_of(path) {
+            Ok(at) => &mut self.projects[at],
+            Err(why) => {
+                return vec![gen_lsp_types::Diagnostic {
+                    source: Some("staunch".to_owned()),
+                    message: gen_lsp_types::Message::String(why),
+                    ..Default::default()
+                }];
+            }
+        };
+        let levels = project.unit.levels.clone();
+        let analysis = project.analysis(&self.documents);
+        analysis.file(path).map(|it| problems::of(analysis, &levels, it)).unwrap_or_default()
+    }
+
+    fn publish_one(
+        &self,
+        uri: Uri,
+        version: Option<i32>,
+        diagnostics: Vec<gen_lsp_types::Diagnostic>,
+    ) -> Result<(), String> {
+        let params = PublishDiagnosticsParams { uri, version, diagnostics };
+        let method = LspNotificationMethod::TextDocumentPublishDiagnostics.as_str().to_owned();
+        self.send(Message::Notification(Notification::new(method, params)))
+    }
+}
+
+fn read<T: serde::de::DeserializeOwned>(params: Json) -> Option<T> {
+    serde_json::from_value(params).ok()
+}
+
+fn error(id: RequestId, code: ErrorCode, why: String) -> Response {
+    Response::new_err(id, code as i32, why)
+}
