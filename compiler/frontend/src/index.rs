@@ -24,6 +24,8 @@ pub struct Index {
     pub offers: Vec<Offer>,
     /// In the order of files and lines.
     pub diagnostics: Vec<Diagnostic>,
+    /// The definitions by the places of their names.
+    places: Vec<DefId>,
     pub(crate) asked: Option<(u16, u32)>,
 }
 
@@ -47,6 +49,8 @@ impl Index {
     /// Reads what the files declare.
     pub(crate) fn declare(&mut self, files: &[ast::File<'_>]) {
         self.definitions = outline::definitions(files);
+        self.places = (0..self.definitions.len()).map(DefId).collect();
+        self.places.sort_by_key(|it| (self.definitions[it.0].name.file, self.definitions[it.0].name.start));
     }
 
     /// Adds what checking has found out.
@@ -61,7 +65,8 @@ impl Index {
                 uses.insert(span, meaning);
             }
         }
-        let mut places: FxHashMap<String, usize> = FxHashMap::default();
+        let offered_before = self.offers.iter().enumerate().map(|(at, it)| (it.name.to_ascii_uppercase(), at));
+        let mut places: FxHashMap<String, usize> = offered_before.collect();
         for Offered { name, means, is_expected } in offered {
             let Some(meaning) = means.meaning(|declared| known.get(&declared).copied()) else { continue };
             let place = *places.entry(name.to_ascii_uppercase()).or_insert(self.offers.len());
@@ -88,7 +93,11 @@ impl Index {
         let holds = |it: Span| it.file == file && it.start <= offset && offset <= it.end;
         let after = self.uses.partition_point(|it| (it.span.file, it.span.start) <= (file, offset));
         let used = self.uses[..after].last().filter(|it| holds(it.span)).map(|it| (it.span, it.meaning.clone()));
-        used.or_else(|| self.ids().find(|it| holds(it.1.name)).map(|(id, it)| (it.name, Meaning::Definition(id))))
+        let start = |it: &DefId| (self.get(*it).name.file, self.get(*it).name.start);
+        let after = self.places.partition_point(|it| start(it) <= (file, offset));
+        // A name that is empty may be where another one begins.
+        let declared = self.places[..after].iter().rev().take(2).find(|it| holds(self.get(**it).name));
+        used.or_else(|| declared.map(|it| (self.get(*it).name, Meaning::Definition(*it))))
     }
 
     /// The names that are used in a part of a text, in their order.

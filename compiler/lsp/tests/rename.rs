@@ -1,0 +1,134 @@
+//! Every name of many programs is renamed, one at a time: the program stays the same.
+
+mod support;
+
+use serde_json::json;
+use staunch_frontend::{Dialect, Options, Source, Sources, compile, index};
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use support::{Editor, edited, place, uri};
+
+#[test]
+fn each_name_of_the_examples_can_be_another() {
+    let examples = project("st_examples");
+    let mut files = Vec::new();
+    list(&examples, &mut files);
+    let (count, refused) = renamed(files);
+    assert!(count > 250, "{count} names");
+    assert!(refused.is_empty(), "{} of {count}: {:#?}", refused.len(), &refused[..refused.len().min(20)]);
+}
+
+#[test]
+fn each_name_of_many_cases_can_be_another() {
+    let mut files = Vec::new();
+    list(&project("tests/cases"), &mut files);
+    // One of several files is another one's part; each seventh of the others, by their names.
+    let is_alone = |it: &PathBuf| !it.with_extension("2.st").exists() && !stem(it).contains('.');
+    let files: Vec<_> = files.into_iter().filter(is_alone).step_by(7).collect();
+    let (count, refused) = renamed(files);
+    assert!(count > 700, "{count} names");
+    assert!(refused.is_empty(), "{} of {count}: {:#?}", refused.len(), &refused[..refused.len().min(20)]);
+}
+
+fn project(folder: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder)
+}
+
+fn list(folder: &Path, files: &mut Vec<PathBuf>) {
+    let mut entries: Vec<_> = fs::read_dir(folder).expect("a folder").flatten().map(|it| it.path()).collect();
+    entries.sort();
+    for path in entries {
+        match path.extension().and_then(|it| it.to_str()) {
+            _ if path.is_dir() && !path.ends_with("target") => list(&path, files),
+            Some("st") => files.push(path),
+            _ => {}
+        }
+    }
+}
+
+fn stem(path: &Path) -> &str {
+    path.file_stem().and_then(|it| it.to_str()).unwrap_or_default()
+}
+
+/// How many names were renamed, and those where the program is another one then.
+fn renamed(files: Vec<PathBuf>) -> (usize, Vec<String>) {
+    let (mut count, mut wrong) = (0, Vec::new());
+    for path in files {
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        let options = options(&path, &text);
+        if let Some(before) = program(&text, &options) {
+            count += of_file(stem(&path), &text, &options, &before, &mut wrong);
+        }
+    }
+    (count, wrong)
+}
+
+/// As the comments of a case, and the project of an example, have it.
+fn options(path: &Path, text: &str) -> Options {
+    let named = text.lines().map_while(|it| it.strip_prefix("//")).find_map(|it| it.trim().strip_prefix("dialect:"));
+    let settings = fs::read_to_string(path.with_file_name("staunch.toml")).unwrap_or_default();
+    let of_project = settings.lines().find_map(|it| it.strip_prefix("dialect = ")).map(|it| it.trim_matches('"'));
+    let name = named.or(of_project).map_or("iec", str::trim);
+    Options { dialect: Dialect::named(name).expect("a dialect"), ..Options::default() }
+}
+
+/// The program in words; nothing where it is refused.
+fn program(text: &str, options: &Options) -> Option<String> {
+    let mut sources = Sources::default();
+    sources.add(Source::decode("main.st", text.as_bytes()));
+    let compilation = compile(&sources, options);
+    // What a condition asks for by name is not a name.
+    let is_plain = !text.contains("{IF ") && !text.contains("{external") && !text.contains("attribute 'instance-path'");
+    compilation.program.filter(|_| is_plain).map(|it| format!("{it:?}"))
+}
+
+fn of_file(case: &str, text: &str, options: &Options, before: &str, wrong: &mut Vec<String>) -> usize {
+    let mut sources = Sources::default();
+    sources.add(Source::decode("main.st", text.as_bytes()));
+    let (index, _) = index(&sources, options, None);
+    let source = sources.get(0);
+    let mut editor = Editor::open(options.dialect, &[]);
+    editor.open_one("main.st", text);
+    let words: HashSet<String> =
+        text.split(|it: char| !(it.is_alphanumeric() || it == '_')).map(str::to_ascii_lowercase).collect();
+    let mut count = 0;
+    for definition in index.definitions.iter().filter(|it| it.name.file == 0 && it.name.start < it.name.end) {
+        let old = sources.text(definition.name);
+        let Some(new) = other(old, &words) else { continue };
+        let (line, _) = source.line_column(definition.name.start);
+        let range = source.line_range(line);
+        let column = text[range.start..definition.name.start as usize].encode_utf16().count() as u32;
+        let mut params = place("main.st", (line - 1, column));
+        params["newName"] = json!(new);
+        count += 1;
+        match editor.try_ask("textDocument/rename", params) {
+            Err(why) => wrong.push(format!("{case}:{line}: {old}: {why}")),
+            Ok(edit) => {
+                let text = edited(text, &edit["changes"][uri("main.st")]);
+                let after = program(&text, options).map(|it| it.replace(&new, old));
+                if after.as_deref().map(same_letters) != Some(same_letters(before)) {
+                    wrong.push(format!("{case}:{line}: {old} as {new} is another program"));
+                }
+            }
+        }
+    }
+    editor.close();
+    count
+}
+
+/// What is emitted may have a name in small letters, or in capitals.
+fn same_letters(program: &str) -> String {
+    program.to_ascii_lowercase()
+}
+
+/// A name of the same length that nothing has: so places stay as they are.
+fn other(old: &str, words: &HashSet<String>) -> Option<String> {
+    let length = old.len().checked_sub(2)?;
+    let letters = || ('a'..='z').rev();
+    let all = letters().flat_map(|a| letters().map(move |b| format!("{a}{b}{}", "q".repeat(length))));
+    let is_free = |it: &String| {
+        !words.contains(it) && !matches!(it.as_str(), "if" | "do" | "of" | "or" | "to" | "by" | "at" | "on")
+    };
+    old.is_ascii().then(|| all.into_iter().find(is_free)).flatten()
+}
