@@ -5,6 +5,7 @@ use crate::{
     ast::{Name, TypeKind, TypeSpec, VarDecl},
     diagnostic::{Code, Diagnostic},
     lex::Kind,
+    source::Span,
 };
 use staunch_ir::Elementary;
 
@@ -51,14 +52,15 @@ pub fn read<'s>(input: &mut In<'_, '_, 's>) -> Option<VarDecl<'s>> {
     let whole = input.here();
     let end = input.number() + shape.end;
     let whole = whole.to(input.state().place(end - 1));
-    let found = declared(input, &shape, name.text);
-    input.report(found.1.map_or_else(
-        || report(whole, &shape).help(format!("write `{} := …`", found.0)),
-        |value| {
-            let meant = format!("{}{value}", found.0);
-            report(whole, &shape).help(format!("write `{meant}`")).fix(whole, meant)
-        },
-    ));
+    let (declaration, value) = declared(input, &shape, name.text);
+    let error = report(whole, &shape);
+    input.report(match value {
+        Some(value) => {
+            let meant = declaration + &value;
+            error.help(format!("write `{meant}`")).fix(whole, meant)
+        }
+        None => error.help(format!("write `{declaration} := …`")),
+    });
     while input.number() <= end {
         input.take();
     }
@@ -66,7 +68,8 @@ pub fn read<'s>(input: &mut In<'_, '_, 's>) -> Option<VarDecl<'s>> {
     Some(VarDecl::new(vec![name], ty, whole))
 }
 
-fn report(whole: crate::source::Span, shape: &Shape) -> Diagnostic {
+/// What is wrong with such a declaration.
+fn report(whole: Span, shape: &Shape) -> Diagnostic {
     let message = if shape.stars > 0 {
         "a pointer is declared with POINTER TO, after its name"
     } else if !shape.lengths.is_empty() {
@@ -117,12 +120,8 @@ fn declared(input: &mut In<'_, '_, '_>, shape: &Shape, name: &str) -> (String, O
 fn element<'w>(words: &[&'w str]) -> &'w str {
     let is = |word: &str| words.iter().any(|it| it.eq_ignore_ascii_case(word));
     if is("unsigned") {
-        return match () {
-            () if is("char") => "USINT",
-            () if is("short") => "UINT",
-            () if is("long") => "UDINT",
-            () => "UINT",
-        };
+        let sizes = [("char", "USINT"), ("short", "UINT"), ("long", "UDINT")];
+        return sizes.iter().find(|it| is(it.0)).map_or("UINT", |it| it.1);
     }
     let plain = words.iter().copied().filter(|it| !QUALIFIERS.iter().any(|of| it.eq_ignore_ascii_case(of)));
     let ty = plain.last();
