@@ -1,6 +1,6 @@
 //! What other dialects make of sources that are rejected in one: whose program it is decides more errors than its text.
 
-use staunch_frontend::{Dialect, Options, Severity, Sources};
+use staunch_frontend::{Diagnostic, Dialect, Options, Severity, Sources};
 
 /// Larger sources are not checked again, in bytes.
 const LARGEST: usize = 1 << 20;
@@ -26,10 +26,12 @@ pub enum Advice {
     Fewer { dialect: Dialect, errors: usize, fewer: usize },
 }
 
-/// The better dialects for sources that have `errors` in that of `options`.
-pub fn advice(sources: &Sources, options: &Options, errors: usize) -> Option<Advice> {
+/// The better dialects for sources that have these diagnostics in that of `options`. None is better where one of their
+/// errors is a mistake that another dialect only does not see.
+pub fn advice(sources: &Sources, options: &Options, found: &[Diagnostic]) -> Option<Advice> {
     let size: usize = sources.files().iter().map(|it| it.text.len()).sum();
-    if errors == 0 || size > LARGEST {
+    let errors = count(found);
+    if errors == 0 || size > LARGEST || found.iter().any(|it| it.in_this_dialect) {
         return None;
     }
     let others = ORDER.into_iter().filter(|it| *it != options.dialect);
@@ -44,7 +46,10 @@ pub fn advice(sources: &Sources, options: &Options, errors: usize) -> Option<Adv
 }
 
 fn errors_of(sources: &Sources, options: &Options) -> usize {
-    let found = staunch_frontend::check(sources, options);
+    count(&staunch_frontend::check(sources, options))
+}
+
+fn count(found: &[Diagnostic]) -> usize {
     found.iter().filter(|it| it.severity == Severity::Error).count()
 }
 
@@ -74,8 +79,8 @@ mod tests {
         let mut sources = Sources::default();
         sources.add(Source::new("main.st", text.to_owned()));
         let options = Options { dialect, ..Options::default() };
-        let errors = errors_of(&sources, &options);
-        advice(&sources, &options, errors).map(|it| it.text("--dialect"))
+        let errors = staunch_frontend::check(&sources, &options);
+        advice(&sources, &options, &errors).map(|it| it.text("--dialect"))
     }
 
     #[test]
@@ -87,5 +92,15 @@ mod tests {
         let fewer = "note: the sources have 3 errors; with `--dialect codesys` they have 1 error";
         assert_eq!(found(&wrong, Dialect::Iec).as_deref(), Some(fewer));
         assert_eq!(found("PROGRAM Main VAR i : INT; END_VAR i := missing; END_PROGRAM", Dialect::Iec), None);
+    }
+
+    /// OpenPLC takes the bit for another byte's, and where FB_init is a METHOD like any other, it does not run.
+    #[test]
+    fn no_dialect_makes_a_mistake_right() {
+        let beyond = "PROGRAM Main VAR x AT %IX0.8 : BOOL; y : BOOL; END_VAR y := x; END_PROGRAM";
+        assert_eq!(found(beyond, Dialect::Codesys), None);
+        let init = "FUNCTION_BLOCK fb VAR n : INT; END_VAR METHOD FB_init : BOOL VAR_INPUT bInitRetains : BOOL; bInCopyCode : BOOL; \
+            start : INT; END_VAR n := start; END_METHOD END_FUNCTION_BLOCK PROGRAM Main VAR f : fb; END_VAR f(); END_PROGRAM";
+        assert_eq!(found(init, Dialect::Codesys), None);
     }
 }

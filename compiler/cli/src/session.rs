@@ -207,8 +207,7 @@ impl Session {
     /// Which dialects take the sources that this one rejects, for people.
     fn advice(&self, compilation: &Compilation, options: &Options) -> Option<Advice> {
         let is_for_people = self.common.format() == MessageFormat::Human && !self.common.quiet;
-        let errors = compilation.diagnostics.iter().filter(|it| it.severity == Severity::Error).count();
-        if is_for_people { advice(&self.sources, options, errors) } else { None }
+        if is_for_people { advice(&self.sources, options, &compilation.diagnostics) } else { None }
     }
 
     /// With `-v`: the project file and the sources.

@@ -178,7 +178,8 @@ impl<'s> Expansion<'_, 's> {
                     );
                     return None;
                 }
-                let names = self.classes.all.iter().map(|it| it.pou.name.text);
+                let others = self.classes.all.iter().map(|it| it.pou.name.text);
+                let names = others.filter(|it| Key(it) != Key(pou.name.text));
                 let message = format!("there is no FUNCTION_BLOCK `{}`", base.text);
                 let error = Diagnostic::new(Code::E0102, base.span, message).label("expected one to extend");
                 self.diagnostics.push(match nearest(base.text, names) {

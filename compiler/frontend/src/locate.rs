@@ -70,6 +70,8 @@ fn report_alias(alias: Name<'_>, log: &mut Log<'_>) {
         Diagnostic::new(Code::W0413, span, format!("`{text}` is not the alias of a pin of this project"))
             .label("the variable has no address")
             .help(format!("give a pin the alias `{text}` in the editor, or write the address: `AT %IX0.0`"))
+    } else if let Some(problem) = Some(address_without_sign(span, text)).filter(|it| it.fix.is_some()) {
+        problem
     } else if has_late_addresses(span, log) {
         Diagnostic::new(Code::E0409, span, format!("`{text}` is not a direct address"))
             .label("an alias of OpenPLC Editor is known only in its project")

@@ -46,6 +46,9 @@ pub struct Diagnostic {
     /// What to do, imperative, can be followed literally.
     pub help: Option<String>,
     pub fix: Option<Fix>,
+    /// It is a mistake in what only this dialect has, or takes at its word: another one would accept the text, and mean
+    /// something else.
+    pub in_this_dialect: bool,
 }
 
 impl Diagnostic {
@@ -61,7 +64,15 @@ impl Diagnostic {
             notes: Vec::new(),
             help: None,
             fix: None,
+            in_this_dialect: false,
         }
+    }
+
+    /// Marks what another dialect would accept without making it right.
+    #[must_use]
+    pub fn in_this_dialect(mut self) -> Self {
+        self.in_this_dialect = true;
+        self
     }
 
     #[must_use]

@@ -180,15 +180,45 @@ impl<'s> Reading<'s> {
             Some('#') if self.text[index(place.1)..].starts_with(|it: char| it.is_ascii_alphabetic()) => {
                 it.help("variables are written without `#`").fix(self.span(place), "")
             }
-            Some('|') => it.help("write `OR`"),
+            Some('#') if self.is_duration_after(place.1) => {
+                it.help("a TIME begins with `T#`").fix(self.span(place), "T#")
+            }
+            Some('|') => it.help("write `OR`").fix(self.span(place), self.apart(place, "OR")),
             Some('#') => it.help("a comment is written `// …` or `(* … *)`, a number of base 16 `16#FF`"),
+            Some('$') if let Some(digits) = self.hexadecimal_after(place.1) => {
+                it.help(format!("a number of base 16 is written `16#{digits}`")).fix(self.span(place), "16#")
+            }
             Some('$') => it.help("a number of base 16 is written `16#FF`"),
-            Some('~') => it.help("write `NOT`"),
+            Some('~') => it.help("write `NOT`").fix(self.span(place), "NOT "),
             Some('?') => it.help("choose a value with `SEL(condition, value_if_false, value_if_true)`"),
             Some('}') => it.help("a block ends with its own keyword: `END_IF`, `END_FOR`, `END_WHILE`"),
             _ => it.label("delete this"),
         };
         self.tokens.diagnostics.push(it);
+    }
+
+    /// A word with spaces where it would touch the text next to a place, which it replaces.
+    fn apart(&self, place: (u32, u32), word: &str) -> String {
+        let touches = |it: Option<char>| it.is_some_and(|it| !it.is_whitespace());
+        let before = touches(self.text[..index(place.0)].chars().next_back());
+        let after = touches(self.text[index(place.1)..].chars().next());
+        format!("{}{word}{}", if before { " " } else { "" }, if after { " " } else { "" })
+    }
+
+    /// Whether a number with a unit of time is at a place.
+    fn is_duration_after(&self, at: u32) -> bool {
+        let rest = &self.text[index(at)..];
+        let unit = rest.trim_start_matches(|it: char| it.is_ascii_digit() || it == '.');
+        let word = unit.split(|it: char| !it.is_ascii_alphanumeric()).next().unwrap_or_default();
+        unit.len() < rest.len() && ["d", "h", "m", "s", "ms", "us", "ns"].iter().any(|it| word.eq_ignore_ascii_case(it))
+    }
+
+    /// The digits of base 16 that are at a place.
+    fn hexadecimal_after(&self, at: u32) -> Option<&'s str> {
+        let rest = &self.text[index(at)..];
+        let digits = &rest[..rest.find(|it: char| !it.is_ascii_alphanumeric() && it != '_').unwrap_or(rest.len())];
+        let is_number = !digits.is_empty() && digits.bytes().all(|it| it.is_ascii_hexdigit());
+        is_number.then_some(digits)
     }
 
     /// ruSTy's word for a POU that is implemented elsewhere: reported once in a file.

@@ -15,6 +15,7 @@ mod misspelt;
 
 mod block_ends;
 mod foreign_block;
+mod foreign_declaration;
 mod foreign_expression;
 mod foreign_reader;
 mod foreign_statement;

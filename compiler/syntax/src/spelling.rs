@@ -54,6 +54,12 @@ pub fn nearest<'c>(name: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
         .map(|(_, candidate)| candidate)
 }
 
+/// Whether a word is some of the letters of another one, in their order and from the first on: `PRG` of `PROGRAM`.
+pub fn abbreviates(word: &str, whole: &str) -> bool {
+    let mut letters = whole.chars();
+    word.chars().next() == whole.chars().next() && word.chars().all(|it| letters.any(|of| of == it))
+}
+
 fn begin_alike(a: &str, b: &str) -> bool {
     let first = |it: &str| it.chars().next().map(|it| it.to_ascii_lowercase());
     first(a) == first(b)

@@ -11,7 +11,9 @@ use crate::types::declarations::Declarations;
 use crate::types::scope::Scope;
 use crate::types::table::{Resolved, scalar_initial};
 use crate::{Code, Diagnostic, Span};
-use staunch_ir::{Array, ArrayId, Const, ExprKind, Field, Location, RefKind, Repr, Section, StructId, Type};
+use staunch_ir::{
+    Array, ArrayId, Const, Elementary, ExprKind, Field, Location, RefKind, Repr, Section, StructId, Type,
+};
 use staunch_runtime::{BlockInfo, Pin, PinRole};
 use std::rc::Rc;
 
@@ -55,10 +57,21 @@ impl<'s> Declarations<'s> {
             (InitialKind::Elements(_) | InitialKind::Fields(_), _) => {
                 let shape = if matches!(initial.kind, InitialKind::Elements(_)) { "an array" } else { "a structure" };
                 let found = self.program.type_name(target.ty);
-                self.report(
+                let error =
                     Diagnostic::new(Code::E0201, initial.span, format!("{shape} value cannot initialise {found}"))
-                        .label(format!("expected a value of type {found}")),
-                );
+                        .label(format!("expected a value of type {found}"));
+                let text = self.log.sources.text(initial.span);
+                let halves = text.split_once(',').filter(|_| target.ty.elementary().is_some_and(Elementary::is_real));
+                let is_number = |it: &str| !it.is_empty() && it.bytes().all(|it| it.is_ascii_digit());
+                self.report(match halves.filter(|it| is_number(it.0) && is_number(it.1)) {
+                    Some((whole, fraction)) => {
+                        let meant = format!("{whole}.{fraction}");
+                        error
+                            .help(format!("the decimal separator is a point: write `{meant}`"))
+                            .fix(initial.span, meant)
+                    }
+                    None => error,
+                });
                 None
             }
         }

@@ -44,7 +44,7 @@ const OF_SIMATIC: [(&str, &str); 4] = [
 ];
 
 /// What other languages call elementary types.
-const FOREIGN: [(&str, &str); 24] = [
+const FOREIGN: [(&str, &str); 42] = [
     ("INTEGER", "INT"),
     ("SHORT", "INT"),
     ("LONG", "DINT"),
@@ -64,6 +64,24 @@ const FOREIGN: [(&str, &str); 24] = [
     ("UINT32", "UDINT"),
     ("UINT64", "ULINT"),
     ("UNSIGNED", "UINT"),
+    ("I8", "SINT"),
+    ("I16", "INT"),
+    ("I32", "DINT"),
+    ("I64", "LINT"),
+    ("U8", "USINT"),
+    ("U16", "UINT"),
+    ("U32", "UDINT"),
+    ("U64", "ULINT"),
+    ("F32", "REAL"),
+    ("F64", "LREAL"),
+    ("INT8_T", "SINT"),
+    ("INT16_T", "INT"),
+    ("INT32_T", "DINT"),
+    ("INT64_T", "LINT"),
+    ("UINT8_T", "USINT"),
+    ("UINT16_T", "UINT"),
+    ("UINT32_T", "UDINT"),
+    ("UINT64_T", "ULINT"),
     ("STR", "STRING"),
     ("TEXT", "STRING"),
     ("TIMER", "TON"),

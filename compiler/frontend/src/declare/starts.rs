@@ -105,6 +105,7 @@ impl<'s> Declarations<'s> {
         let Some((_, span)) = init.filter(|it| self.dialect(it.1) == Dialect::Codesys) else { return };
         self.report(
             Diagnostic::new(Code::E0403, span, "a PROGRAM has no FB_init")
+                .in_this_dialect()
                 .label("the system calls it only for instances of FUNCTION_BLOCKs")
                 .help("give the variables initial values, or move these statements into a FUNCTION_BLOCK and declare an instance of it"),
         );
@@ -124,6 +125,7 @@ impl<'s> Declarations<'s> {
                 self.report(
                     Diagnostic::new(Code::E0403, pou.name.span, format!("this FB_init has no input `{missing}`"))
                         .label("the system passes the kind of start in these inputs")
+                        .in_this_dialect()
                         .help("declare `VAR_INPUT bInitRetains : BOOL; bInCopyCode : BOOL; END_VAR` in it"),
                 );
             }
@@ -135,6 +137,7 @@ impl<'s> Declarations<'s> {
             if let Some(block) = pou.blocks.iter().filter(is_given).find(|it| !it.vars.is_empty()) {
                 self.report(
                     Diagnostic::new(Code::E0403, block.span, "a METHOD that runs after the start has no inputs")
+                        .in_this_dialect()
                         .label("the system calls it without arguments")
                         .other(pou.name.span, format!("`{AFTER}` is before this METHOD")),
                 );

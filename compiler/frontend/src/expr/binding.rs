@@ -120,7 +120,10 @@ impl<'s> Checker<'_, 's> {
             }
         }
         if !complete && !compared {
-            self.check_arguments(arguments);
+            // Of `IN => 5`, the sign is the mistake, and not the value.
+            let is_checked = |it: &&ast::Argument<'s>| !matches!(&it.kind, ArgumentKind::Output { target: Some(value), .. } if matches!(value.kind, Ast::Literal(_)));
+            let checked: Vec<_> = arguments.iter().filter(is_checked).cloned().collect();
+            self.check_arguments(&checked);
         }
         (complete && !compared).then_some(given)
     }

@@ -53,6 +53,9 @@ impl<'s> Checker<'_, 's> {
                 None => complete = false,
             }
         }
+        if !complete {
+            return None;
+        }
         if let Some(at) = (0..operands.len()).find(|at| !matches!(given[*at], Given::Value(_))) {
             let named: Vec<_> = operands.iter().map(|it| format!("{it} := tag")).collect();
             let message = format!("`{}` needs a BOOL for `{}`", name.text, operands[at]);
@@ -63,7 +66,7 @@ impl<'s> Checker<'_, 's> {
             )));
             return None;
         }
-        if !self.has_rung(name, given.last()?) || !complete {
+        if !self.has_rung(name, given.last()?) {
             return None;
         }
         let place_of =
@@ -173,12 +176,17 @@ impl<'s> Checker<'_, 's> {
         if ty != Type::BOOL {
             let has = self.type_name(ty);
             let message = format!("`{}` works on a BOOL, or on a bit of an integer, found {has}", name.text);
-            self.report(Diagnostic::new(Code::E0313, expr.span, message).label("expected a BOOL").help(
-                match matches!(ty, Type::Elementary(it) if it.repr().is_integer()) {
-                    true => format!("write one of its bits: `{}.0`", self.decl.log.sources.text(expr.span)),
-                    false => format!("declare `{operand} : BOOL;`, and give it"),
-                },
-            ));
+            let error = Diagnostic::new(Code::E0313, expr.span, message).label("expected a BOOL");
+            if matches!(ty, Type::Block(_)) {
+                let error = error.help(format!("declare `{operand} : BOOL;`, and give it"));
+                let error = self.help_on_other_tag(error, ty, name, expr.span);
+                self.report(error);
+                return None;
+            }
+            self.report(error.help(match matches!(ty, Type::Elementary(it) if it.repr().is_integer()) {
+                true => format!("write one of its bits: `{}.0`", self.decl.log.sources.text(expr.span)),
+                false => format!("declare `{operand} : BOOL;`, and give it"),
+            }));
             return None;
         }
         Some((found.place, Bit { bits: bit.map(|it| it.bits()), span: expr.span }))

@@ -53,10 +53,16 @@ impl<'s> Checker<'_, 's> {
                     return None;
                 }
                 let ty = self.type_name(other);
-                self.report(
+                let error =
                     Diagnostic::new(Code::E0305, callee.span, format!("a variable of type {ty} cannot be called"))
-                        .label("this is not an instance of a block"),
-                );
+                        .label("this is not an instance of a block");
+                self.report(match arguments {
+                    [ast::Argument { kind: ast::ArgumentKind::Positional(value), .. }] => {
+                        let text = [callee.span, value.span].map(|it| self.decl.log.sources.text(it));
+                        error.help(format!("to assign, write `{} := {};`", text[0], text[1]))
+                    }
+                    _ => error,
+                });
                 None
             }
         }

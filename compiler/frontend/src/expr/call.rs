@@ -4,6 +4,7 @@ use super::callee::Callee;
 use super::checker::Checker;
 use super::enable::Enable;
 use super::generic_call::Called;
+use super::logix_operands;
 use super::operand::Operand;
 use crate::diagnostic::wording::{list, list_of_all};
 use crate::dialect::{Dialect, missing};
@@ -119,11 +120,16 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_unused(&mut self, name: ast::Name<'s>, span: Span) {
-        self.report(
-            Diagnostic::new(Code::E0508, span, format!("the result of `{}` is not used", name.text))
-                .label("this statement has no effect")
-                .help(format!("assign it: `result := {}(…);`", name.text)),
-        );
+        let error = Diagnostic::new(Code::E0508, span, format!("the result of `{}` is not used", name.text))
+            .label("this statement has no effect");
+        let is_logix = self.decl.dialect(span) == Dialect::Logix;
+        self.report(match logix_operands::computed_in_ladder(name.text).filter(|_| is_logix) {
+            Some(sign) => error.help(format!(
+                "in Structured Text, {} is written `destination := a {sign} b;`",
+                name.text.to_ascii_uppercase()
+            )),
+            None => error.help(format!("assign it: `result := {}(…);`", name.text)),
+        });
     }
 
     pub(crate) fn call_statement(

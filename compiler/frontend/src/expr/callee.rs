@@ -99,7 +99,7 @@ impl<'s> Checker<'_, 's> {
             }
             Found::One(Meaning::Block(_)) | Found::Nothing => {
                 if !self.is_logix_call(name, arguments) {
-                    self.report_unknown_function(name);
+                    self.report_unknown_function(name, arguments);
                 }
                 None
             }

@@ -229,7 +229,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// What is written there, where a help can repeat it.
-    fn short_text(&self, span: Span) -> Option<String> {
+    pub(super) fn short_text(&self, span: Span) -> Option<String> {
         let text = self.decl.log.sources.text(span);
         ((1..60).contains(&text.len()) && !text.contains('\n')).then(|| text.to_owned())
     }

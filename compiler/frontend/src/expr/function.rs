@@ -290,6 +290,7 @@ impl<'s> Checker<'_, 's> {
             self.report(
                 Diagnostic::new(Code::E0303, span, message)
                     .label("FB_init runs at the start")
+                    .in_this_dialect()
                     .other(formal.name.span, "declared here, without an initial value")
                     .help(format!("write it after the type of the instance: `: Type({name} := …)`")),
             );

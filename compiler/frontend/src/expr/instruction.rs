@@ -70,7 +70,7 @@ impl<'s> Checker<'_, 's> {
             };
             complete &= made.is_some();
         }
-        if takes_rung && !self.has_rung(name, &given[1]) || !complete {
+        if !complete || takes_rung && !self.has_rung(name, &given[1]) {
             return None;
         }
         let (id, instruction) = found?;
@@ -143,13 +143,31 @@ impl<'s> Checker<'_, 's> {
                     "declare it as {wants}, or call it as the block that it is: `{}(IN := …, PT := …)`",
                     self.decl.log.sources.text(tag.span)
                 )),
-                false => error,
+                false => self.help_on_other_tag(error, found.place.ty, name, tag.span),
             });
             return None;
         };
         self.used_instruction(&found.place, instruction.1);
         parts.push(Held::Place(found.place), Role::Instance, tag.span);
         Some(instruction)
+    }
+
+    /// What is called with a structure that another instruction works on.
+    pub(super) fn help_on_other_tag(&self, error: Diagnostic, ty: Type, name: ast::Name<'s>, tag: Span) -> Diagnostic {
+        let Type::Block(id) = ty else { return error };
+        let (own, asked) = (id.info(), name.text.to_ascii_uppercase());
+        let mut all = own.instructions.iter().filter(|it| !it.name.is_empty());
+        let alike = all.clone().find(|it| it.name.starts_with(&asked) || asked.starts_with(it.name));
+        let Some(meant) = alike.or_else(|| all.next()).filter(|_| own.family == Family::Logix && asked != "RES") else {
+            return error;
+        };
+        let tag = self.decl.log.sources.text(tag);
+        let call = if meant.takes_rung {
+            format!("{}({tag}, RungIn := condition)", meant.name)
+        } else {
+            format!("{}({tag})", meant.name)
+        };
+        error.help(format!("{} is the operand of {}: write `{call};`", article(own.name), meant.name))
     }
 
     /// A timer whose PRE or ACC is below 0 is a fault where its rung lets it time.

@@ -201,6 +201,21 @@ pub(super) fn of_ladder(name: &str) -> Option<&'static str> {
     MEANT.iter().find(|(names, _)| is_it(names)).map(|(_, meant)| *meant)
 }
 
+/// The operator that Structured Text has for an instruction of ladder with a destination: `ADD(a, b, sum)`.
+pub(super) fn computed_in_ladder(name: &str) -> Option<&'static str> {
+    let signs = [
+        ("ADD", "+"),
+        ("SUB", "-"),
+        ("MUL", "*"),
+        ("DIV", "/"),
+        ("MOD", "MOD"),
+        ("AND", "AND"),
+        ("OR", "OR"),
+        ("XOR", "XOR"),
+    ];
+    signs.iter().find(|it| it.0.eq_ignore_ascii_case(name)).map(|it| it.1)
+}
+
 /// The operands, where there is a preset or a count among them. Without `instructions` a bare name is a
 /// block, and only a number where a block has a BOOL says that Logix's are meant.
 fn operands<'a, 's>(arguments: &'a [ast::Argument<'s>], instructions: bool) -> Option<Operands<'a, 's>> {

@@ -75,6 +75,7 @@ pub(crate) mod test_words;
 mod text_conversion;
 mod text_functions;
 mod typed_function;
+mod undeclared_instance;
 mod undefined;
 mod unknown_function;
 pub(crate) mod unresolved;

@@ -239,6 +239,12 @@ impl<'s> Checker<'_, 's> {
             (Some(Type::String(_)), Some(Type::String(_))) if matches!(sides.op, BinaryOp::Add | BinaryOp::And) => {
                 Some(format!("write `CONCAT({a}, {b})`"))
             }
+            (Some(Type::String(it)), Some(Type::Elementary(other))) if sides.op == BinaryOp::Add => {
+                Some(format!("write `CONCAT({a}, {}_TO_{}({b}))`", other.name(), it.word()))
+            }
+            (Some(Type::Elementary(other)), Some(Type::String(it))) if sides.op == BinaryOp::Add => {
+                Some(format!("write `CONCAT({}_TO_{}({a}), {b})`", other.name(), it.word()))
+            }
             (Some(Type::String(x)), Some(Type::String(y))) if x.wide != y.wide => {
                 let narrow = if x.wide { b } else { a };
                 Some(match narrow.strip_prefix('\'').and_then(|it| it.strip_suffix('\'')) {

@@ -483,7 +483,14 @@ impl<'s> Checker<'_, 's> {
         let found = self.type_name(text.ty);
         let wanted = if wide == Some(true) { "WSTRING" } else { "STRING" };
         let message = format!("`{}` takes a {wanted}, but this is {found}", name.text);
-        self.report(Diagnostic::new(Code::E0201, value.span, message).label(format!("expected {wanted}")));
+        let error = Diagnostic::new(Code::E0201, value.span, message).label(format!("expected {wanted}"));
+        self.report(match (text.ty, self.short_text(value.span)) {
+            (Type::Elementary(it), Some(text)) => {
+                let meant = format!("{}_TO_{wanted}({text})", it.name());
+                error.help(format!("write `{meant}`")).fix(value.span, meant)
+            }
+            _ => error,
+        });
         None
     }
 }

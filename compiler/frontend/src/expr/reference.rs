@@ -667,7 +667,8 @@ impl<'s> Checker<'_, 's> {
             let error = Diagnostic::new(Code::E0201, span, format!("expected {expected}, found {found}"))
                 .label(format!("this is {found}"));
             let text = self.decl.log.sources.text(span);
-            let is_followed = text.len() < 40 && self.decl.interface_of(value.ty).is_none();
+            let is_null = text.eq_ignore_ascii_case("NULL");
+            let is_followed = text.len() < 40 && !is_null && self.decl.interface_of(value.ty).is_none();
             let error = if is_followed { error.help(format!("what it refers to is `{text}^`")) } else { error };
             self.report(error);
             return None;

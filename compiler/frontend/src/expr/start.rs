@@ -348,7 +348,7 @@ impl<'s> Checker<'_, 's> {
         let plural = if count == 1 { "" } else { "s" };
         let error =
             Diagnostic::new(Code::E0302, first.span, format!("FB_init of `{class}` takes {count} argument{plural}"));
-        let error = error.label("one too many");
+        let error = error.label("one too many").in_this_dialect();
         self.report(match names.is_empty() {
             true => error,
             false => error.note(format!("written here: {}", names.join(", "))),

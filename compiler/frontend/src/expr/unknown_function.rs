@@ -69,7 +69,7 @@ impl<'s> Checker<'_, 's> {
         );
     }
 
-    pub(crate) fn report_unknown_function(&mut self, name: ast::Name<'s>) {
+    pub(crate) fn report_unknown_function(&mut self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) {
         if self.decl.bare_block(name).is_some() {
             self.report_type_called(name, ast::PouKind::FunctionBlock);
         } else if Family::ALL.into_iter().any(|it| is_instruction(it, name.text)) {
@@ -85,7 +85,7 @@ impl<'s> Checker<'_, 's> {
         } else if not_yet(name.text, self.decl.dialect(name.span)) {
             self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
         } else if !self.is_of_unknown_base() {
-            let error = self.no_such_function(name);
+            let error = self.no_such_function(name, arguments);
             self.report(error);
         }
     }
@@ -100,7 +100,7 @@ impl<'s> Checker<'_, 's> {
         }));
     }
 
-    fn no_such_function(&self, name: ast::Name<'s>) -> Diagnostic {
+    fn no_such_function(&self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Diagnostic {
         let error =
             Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
                 .label("unknown name");
@@ -125,6 +125,8 @@ impl<'s> Checker<'_, 's> {
             error.help(hint)
         } else if let Some(near) = self.like_function(name) {
             error.help(format!("did you mean `{near}`?")).fix(name.span, near)
+        } else if let Some(helped) = self.help_on_instance(name, arguments, &error) {
+            helped
         } else {
             error
         }

@@ -142,6 +142,13 @@ const FOREIGN: [(&str, &str); 13] = [
     ("NO", "write `FALSE`"),
 ];
 
+/// `FFh` as this language has it.
+fn hexadecimal(name: &str) -> Option<String> {
+    let digits = name.strip_suffix(['h', 'H'])?;
+    let is_number = digits.len() > 1 && digits.bytes().all(|it| it.is_ascii_hexdigit());
+    is_number.then(|| format!("16#{}", digits.to_ascii_uppercase()))
+}
+
 impl<'s> Checker<'_, 's> {
     fn not_a_variable(&mut self, name: ast::Name<'s>) {
         let error = Diagnostic::new(Code::E0101, name.span, format!("`{}` is not a variable", name.text));
@@ -287,6 +294,8 @@ impl<'s> Checker<'_, 's> {
             error = error.help(hint);
         } else if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
+        } else if let Some(number) = hexadecimal(name.text) {
+            error = error.help(format!("a number of base 16 is written `{number}`")).fix(name.span, number);
         } else if functions::exists(name.text) {
             error = error.help(format!("call the function: `{}(…)`", name.text));
         }

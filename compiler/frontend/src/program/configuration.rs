@@ -443,6 +443,9 @@ impl<'s> Declarations<'s> {
                 );
                 if let Some(near) = near {
                     error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near.as_str());
+                } else if let [only] = names.as_slice() {
+                    let only = self.names.in_full(self.names.space_of(only.span), only.text);
+                    error = error.label("unknown PROGRAM").help(format!("the one that is declared is `{only}`"));
                 }
                 self.report(error);
                 return None;

@@ -145,6 +145,7 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
     if let (Some(meant), true) = (beyond(name.text), numbers == 2) {
         return Diagnostic::new(Code::E0409, name.span, format!("`{}` is beyond its byte", name.text))
             .label("the bits of a byte are 0 to 7")
+            .in_this_dialect()
             .help(format!("the bit after bit 7 is in the next byte: `{meant}`"));
     }
     let message = if numbers > Module::LEVELS + 1 && !name.text.contains("..") {

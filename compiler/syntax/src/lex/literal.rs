@@ -12,11 +12,13 @@ pub struct Fault {
     pub message: String,
     /// The whole literal as it is meant.
     pub meant: Option<String>,
+    /// What to write, where that is not known.
+    pub help: Option<String>,
 }
 
 impl Fault {
     fn new(start: usize, end: usize, message: impl Into<String>) -> Self {
-        Self { start, end, message: message.into(), meant: None }
+        Self { start, end, message: message.into(), meant: None, help: None }
     }
 }
 
@@ -90,7 +92,7 @@ fn fault(text: &str, first: usize, error: LiteralError) -> Fault {
         | Kind::DateTooFar => error.kind.text().to_owned(),
     };
     let (start, end) = if is_of_all(error.kind) { (0, text.len()) } else { (start, end) };
-    Fault { start, end, message, meant: meant(text, first, error.kind) }
+    Fault { start, end, message, meant: meant(text, first, error), help: help(text, error.kind) }
 }
 
 /// Whether the whole literal is what is wrong, its prefix too.
@@ -112,8 +114,14 @@ fn unit(part: &str) -> String {
 }
 
 /// The whole literal as it is meant, where that is known.
-fn meant(text: &str, first: usize, kind: Kind) -> Option<String> {
-    match kind {
+fn meant(text: &str, first: usize, error: LiteralError) -> Option<String> {
+    match error.kind {
+        Kind::UnknownUnit => {
+            let (start, end) = (first + error.start, first + error.end);
+            let word = unit(&text[start..end]);
+            let number = text[start..end].trim_end_matches(|it: char| it.is_ascii_alphabetic());
+            Some(format!("{}{number}{}{}", &text[..start], unit_of(&word)?, &text[end..]))
+        }
         Kind::UnderscoreInNumber if text.contains('#') => {
             Some(respaced(text, u8::is_ascii_hexdigit, u8::is_ascii_hexdigit))
         }
@@ -129,7 +137,6 @@ fn meant(text: &str, first: usize, kind: Kind) -> Option<String> {
         | Kind::NumberTooLarge
         | Kind::NoNumber
         | Kind::NoUnit
-        | Kind::UnknownUnit
         | Kind::UnitOrder
         | Kind::DurationTooLong
         | Kind::UnsignedDuration
@@ -143,6 +150,34 @@ fn meant(text: &str, first: usize, kind: Kind) -> Option<String> {
         | Kind::Second
         | Kind::DateTooFar => None,
     }
+}
+
+/// The unit that is spelled out, or abbreviated as elsewhere: `sec`.
+fn unit_of(word: &str) -> Option<&'static str> {
+    Some(match word {
+        "sec" | "secs" | "second" | "seconds" => "s",
+        "min" | "mins" | "minute" | "minutes" => "m",
+        "hr" | "hrs" | "hour" | "hours" => "h",
+        "day" | "days" => "d",
+        "msec" | "msecs" | "millis" => "ms",
+        "usec" | "micros" => "us",
+        "nsec" | "nanos" => "ns",
+        _ => return None,
+    })
+}
+
+fn help(text: &str, kind: Kind) -> Option<String> {
+    if kind == Kind::NoUnit {
+        return Some(format!("write the unit: `{text}s` or `{text}ms`"));
+    }
+    let Kind::Digit { base } = kind else { return None };
+    let digits = match base {
+        2 => "0 and 1",
+        8 => "0 to 7",
+        16 => "0 to 9 and A to F",
+        _ => return None,
+    };
+    Some(format!("the digits of base {base} are {digits}"))
 }
 
 /// `text` with a `_` only after a byte that is `before` one and before a byte that is `after` one.

@@ -58,7 +58,7 @@ fn mistakes(state: &State<'_, '_>, mut open: Vec<Kind>, first: Option<Kind>, mut
     let mut found = first.map_or(0, |it| close(&mut open, it));
     let horizon = at + HORIZON;
     loop {
-        let (kind, count) = token(state, at);
+        let (kind, count) = token(state, at, &open);
         if at > horizon || kind == Kind::End || opens_item(kind) || is_pou_end(kind) {
             return found + open.len();
         }
@@ -71,8 +71,8 @@ fn mistakes(state: &State<'_, '_>, mut open: Vec<Kind>, first: Option<Kind>, mut
     }
 }
 
-/// The kind at `at`, misspelt ends by what they stand for, and how many tokens it takes.
-fn token(state: &State<'_, '_>, at: usize) -> (Kind, usize) {
+/// The kind at `at`, misspelt ends by what they stand for where the blocks `open` are, and how many tokens it takes.
+fn token(state: &State<'_, '_>, at: usize, open: &[Kind]) -> (Kind, usize) {
     let kind = state.tokens.kinds.get(at).copied().unwrap_or(Kind::End);
     if kind != Kind::Name {
         return (kind, 1);
@@ -80,7 +80,9 @@ fn token(state: &State<'_, '_>, at: usize) -> (Kind, usize) {
     let (start, end) = state.tokens.places[at];
     let word = state.text.get(index(start)..index(end)).unwrap_or_default();
     let next = state.tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
-    misspelt::misspelt_end(word, next).unwrap_or((kind, 1))
+    let is_used = matches!(next, Kind::Assign | Kind::Dot | Kind::OpenParen | Kind::OpenBracket | Kind::Comma);
+    let end = if is_used { None } else { misspelt::misspelt_end(word, next, open.iter().rev().copied()) };
+    end.unwrap_or((kind, 1))
 }
 
 fn close(open: &mut Vec<Kind>, end: Kind) -> usize {
@@ -103,6 +105,9 @@ pub fn close_block(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
         return;
     }
     if input.state().braced.contains(&opened) {
+        return;
+    }
+    if misspelt::takes_end(input, end) {
         return;
     }
     let kind = input.kind();

@@ -14,7 +14,7 @@ use super::{
     declaration::{section, type_spec},
     diagnostics,
     expression::{arguments, expr},
-    initial::optional_initial,
+    initial::{assign, optional_initial},
     parser::{Expected, In, Problem, TokenReader},
     recovery,
     token_class::{ends_statements, opens_section},
@@ -22,7 +22,7 @@ use super::{
 
 /// `TASK t (INTERVAL := T#20ms, PRIORITY := 1);`
 fn task<'t, 's: 't>() -> impl Rule<'t, 's, Task<'s>> {
-    let property = name().then_ignore(token(Kind::Assign)).then(expr());
+    let property = name().then_ignore(assign()).then(expr());
     let properties = list(property).delimited_by(token(Kind::OpenParen), token(Kind::CloseParen));
     let task = word("TASK").ignore_then(name()).then(properties.or_not()).then_ignore(end());
     task.map(|(name, properties)| Task { name, properties: properties.unwrap_or_default() })

@@ -14,7 +14,7 @@ use super::{
     combinator::{Rule, ahead, delimited, list as list_of, name, nested, rule, token, word},
     diagnostics,
     expression::arguments,
-    foreign_types,
+    foreign_declaration, foreign_types,
     initial::optional_initial,
     misspelt,
     parser::{Expected, In, Parsed, Start, TokenReader},
@@ -187,6 +187,7 @@ pub fn list<'s>(input: &mut In<'_, '_, 's>, end: Kind, opened: Span) -> Vec<VarD
                 }
             }
             Kind::Name if recovery::is_statement_in_section(input) => break,
+            Kind::Name if let Some(it) = foreign_declaration::read(input) => vars.push(it),
             _ => vars.extend(declaration_or_names(input, start)),
         }
     }

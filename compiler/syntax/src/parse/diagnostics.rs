@@ -336,6 +336,23 @@ pub fn else_if(input: &mut In<'_, '_, '_>, words: Span, opened: Span) {
     input.eat(Kind::Semicolon);
 }
 
+/// `REPEAT … END_REPEAT UNTIL x;`
+pub fn until_after_end(whole: Span, opened: Span, condition: &str) -> Diagnostic {
+    let meant = format!("UNTIL {condition} END_REPEAT");
+    Diagnostic::new(Code::E0001, whole, "UNTIL and its condition come before END_REPEAT")
+        .label("these are in the other order")
+        .other(opened, "this REPEAT ends here")
+        .help(format!("write `{meant}`"))
+        .fix(whole, meant)
+}
+
+/// `REPEAT … END_REPEAT`
+pub fn no_until(end: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, end, "expected UNTIL, found END_REPEAT")
+        .label("a REPEAT ends with a condition")
+        .help("write `UNTIL condition` before END_REPEAT: the loop ends when it is TRUE")
+}
+
 pub fn behind_else(word: Span, kind: Kind) -> Diagnostic {
     Diagnostic::new(Code::E0015, word, format!("{kind} comes after the ELSE of the same IF"))
         .label("expected `END_IF`")
@@ -473,6 +490,22 @@ pub fn unsupported(span: Span, what: &str) -> Diagnostic {
 /// `5; y := 1;` among the arms of a CASE.
 pub fn semicolon_for_colon(sign: Span) -> Diagnostic {
     Diagnostic::new(Code::E0001, sign, "expected `:` after a CASE label, found `;`")
+        .label("expected `:`")
+        .help("write `:`")
+        .fix(sign, ":")
+}
+
+/// `CASE 1:` among the arms of a CASE.
+pub fn case_before_label(word: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0020, word, "a branch of a CASE begins with its value, without the word CASE")
+        .label("delete this")
+        .help("write `1: …;` for the value 1")
+        .fix(word, "")
+}
+
+/// `1 => y := 1;` among the arms of a CASE.
+pub fn arrow_for_colon(sign: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0001, sign, "a CASE label ends with `:`, not with `=>`")
         .label("expected `:`")
         .help("write `:`")
         .fix(sign, ":")

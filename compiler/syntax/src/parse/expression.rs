@@ -162,7 +162,7 @@ fn join<'s>(left: Expr<'s>, op: BinaryOp, sign: Span, right: Expr<'s>) -> Expr<'
 // The functions on the way around a pair of brackets are small: without optimisation, a frame has
 // room for every value of its function.
 
-fn unary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
+pub fn unary<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
     match input.kind() {
         Kind::Minus => signed(input, UnaryOp::Neg),
         Kind::Plus => signed(input, UnaryOp::Plus),

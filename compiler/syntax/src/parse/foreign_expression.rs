@@ -36,6 +36,27 @@ pub fn cast<'s>(input: &mut In<'_, '_, 's>, opened: Span, ty: &str, operand: &Ex
     Expr { kind: ExprKind::Error(Vec::new()), span: whole }
 }
 
+/// `n as INT`, after the `n`.
+pub fn cast_after(input: &mut In<'_, '_, '_>, value: &mut Expr<'_>) {
+    if !input.is_word("AS") || input.kind_ahead(1) != Kind::Name || input.on_new_line() {
+        return;
+    }
+    let at = input.number() + 1;
+    let ty = input.state().place(at);
+    let Some(ty) = type_of_ours(input.text(ty)) else { return };
+    input.take();
+    let opened = value.span;
+    let whole = opened.to(input.take());
+    let meant = format!("TO_{ty}({})", input.text(opened));
+    input.report(
+        Diagnostic::new(Code::E0010, whole, "Structured Text converts a value with a function, not with `as`")
+            .label(format!("expected `{meant}`"))
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
+    *value = Expr { kind: ExprKind::Error(Vec::new()), span: whole };
+}
+
 /// Whether `ADR n` is here: a function and its one operand, which have no parentheses.
 pub fn lacks_parentheses(input: &mut In<'_, '_, '_>) -> bool {
     // Each name is looked at: what follows decides first.

@@ -233,6 +233,9 @@ pub fn glued(input: &mut In<'_, '_, '_>, number: Span) -> bool {
         Some(("b" | "B", rest)) => Some(format!("2#{rest}")),
         Some(("o" | "O", rest)) => Some(format!("8#{rest}")),
         _ if is_unit(word) => Some(format!("T#{text}")),
+        _ if type_of_rust(word) => Some(digits.to_owned()),
+        _ if digits == "16" && word.bytes().all(|it| it.is_ascii_hexdigit()) => Some(format!("16#{word}")),
+        _ if let Some(meant) = base_after(digits, word) => Some(meant),
         _ if matches!(word, "f" | "F" | "l" | "L" | "u" | "U" | "UL" | "ul") => Some(digits.to_owned()),
         _ => None,
     };
@@ -243,6 +246,26 @@ pub fn glued(input: &mut In<'_, '_, '_>, number: Span) -> bool {
         None => it.help("write an operator between the number and the name"),
     });
     true
+}
+
+/// `10u8`
+fn type_of_rust(word: &str) -> bool {
+    let bits = word.strip_prefix(['u', 'i', 'f']).unwrap_or_default();
+    matches!(bits, "8" | "16" | "32" | "64" | "size")
+}
+
+/// `0FFh`, `101b`, whose last letter is the base.
+fn base_after(digits: &str, word: &str) -> Option<String> {
+    let (more, last) = word.split_at_checked(word.len().checked_sub(1)?)?;
+    let all = |is: fn(u8) -> bool| digits.bytes().chain(more.bytes()).all(is);
+    let (base, is_number) = match last {
+        "h" | "H" => ("16", all(|it| it.is_ascii_hexdigit())),
+        "b" | "B" => ("2", all(|it| matches!(it, b'0' | b'1'))),
+        "o" | "O" => ("8", all(|it| matches!(it, b'0'..=b'7'))),
+        _ => return None,
+    };
+    let digits = if digits == "0" && !more.is_empty() { "" } else { digits };
+    is_number.then(|| format!("{base}#{digits}{more}"))
 }
 
 pub fn is_unit(word: &str) -> bool {
@@ -279,7 +302,21 @@ pub fn point_first(input: &mut In<'_, '_, '_>) -> bool {
 
 /// `5.`, at what comes after the point.
 pub fn point_last(input: &mut In<'_, '_, '_>, number: Span) {
-    let whole = number.to(input.last());
+    let point = number.to(input.last());
+    let exponent = input.here();
+    let digits = input.text(exponent).strip_prefix(['e', 'E']).unwrap_or_default();
+    let is_exponent = !digits.is_empty() && digits.bytes().all(|it| it.is_ascii_digit()) && point.end == exponent.start;
+    if input.kind() == Kind::Name && is_exponent {
+        input.take();
+        let (whole, meant) = (point.to(exponent), format!("{}0{}", input.text(point), input.text(exponent)));
+        input.report(
+            Diagnostic::new(Code::E0005, whole, "a number needs a digit after its decimal point")
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        return;
+    }
+    let whole = point;
     let text = input.text(whole);
     input.report(
         Diagnostic::new(Code::E0005, whole, "a number needs a digit after its decimal point")
@@ -290,7 +327,8 @@ pub fn point_last(input: &mut In<'_, '_, '_>, number: Span) {
 
 /// `1,5` after the `1`.
 pub fn decimal_comma(input: &mut In<'_, '_, '_>) -> bool {
-    let digits = kind_before(input) == Some(Kind::Integer) && input.kind_ahead(1) == Kind::Integer;
+    let digits = kind_before(input) == Some(Kind::Integer) && matches!(input.kind_ahead(1), Kind::Integer | Kind::Real);
+    let is_group = input.kind_ahead(1) == Kind::Real;
     let (last, comma, at) = (input.last(), input.here(), input.number());
     let after = input.state().place(at + 1);
     if input.kind() != Kind::Comma || !digits || last.end != comma.start || comma.end != after.start {
@@ -299,13 +337,23 @@ pub fn decimal_comma(input: &mut In<'_, '_, '_>) -> bool {
     input.take();
     input.take();
     let whole = last.to(after);
-    let meant = input.text(whole).replace(',', ".");
-    input.report(
-        Diagnostic::new(Code::E0005, whole, "the decimal separator is a point")
-            .help(format!("write `{meant}`"))
-            .fix(whole, meant),
-    );
+    let text = input.text(whole);
+    if is_group {
+        let meant = text.replace(',', "_");
+        input.report(
+            Diagnostic::new(Code::E0005, whole, "the digits of a number are grouped with `_`, not with `,`")
+                .help(format!("write `{meant}`"))
+                .fix(whole, meant),
+        );
+        return true;
+    }
+    input.report(comma_for_point(whole, text.replace(',', ".")));
     true
+}
+
+pub fn comma_for_point(whole: Span, meant: String) -> Diagnostic {
+    let code = if meant.contains('#') { Code::E0006 } else { Code::E0005 };
+    Diagnostic::new(code, whole, "the decimal separator is a point").help(format!("write `{meant}`")).fix(whole, meant)
 }
 
 /// Whether the current token is the last on its line.

@@ -200,7 +200,13 @@ pub fn type_before_name<'t, 's: 't>(names: &[Name<'s>]) -> impl Rule<'t, 's, Opt
         let name = input.name()?;
         let Some(ty) = ty else { return Ok(name) };
         if input.kind() != Kind::Equal {
-            let error = diagnostics::type_first(input.state(), ty.span, name.span);
+            let mut more = 0;
+            while input.kind_ahead(more) == Kind::Comma && input.kind_ahead(more + 1) == Kind::Name {
+                more += 2;
+            }
+            let last = input.number() + more - 1;
+            let names = name.span.to(input.state().place(last));
+            let error = diagnostics::type_first(input.state(), ty.span, names);
             input.report(error);
             return Ok(name);
         }

@@ -63,6 +63,12 @@ fn has_more(input: &mut In<'_, '_, '_>) -> bool {
             count > 0
         }
         Some(Kind::Integer | Kind::Real) if is_name => foreign_syntax::glued(input, literal),
+        Some(Kind::Time) if decimal_comma(input.state(), at).is_some() => {
+            for _ in 0..3 {
+                input.take();
+            }
+            true
+        }
         Some(Kind::Time) if is_name && lacks_unit(input.state(), at) => {
             input.take();
             true
@@ -78,6 +84,18 @@ fn lacks_unit(state: &State<'_, '_>, at: usize) -> bool {
         && foreign_syntax::is_unit(state.slice(unit))
         && !state.breaks(duration.end, unit.start)
         && lex::duration(state.slice(duration)).is_err()
+}
+
+/// `T#1,5s`, which is one duration, and as it is meant.
+fn decimal_comma(state: &State<'_, '_>, at: usize) -> Option<(Span, String)> {
+    let follows = state.tokens.kinds.get(at + 1..)?.starts_with(&[Kind::Comma, Kind::Integer, Kind::Name]);
+    let is_joined = || (at..at + 3).all(|it| state.place(it).end == state.place(it + 1).start);
+    if !follows || !is_joined() {
+        return None;
+    }
+    let whole = state.place(at).to(state.place(at + 3));
+    let meant = state.slice(whole).replace(',', ".");
+    lex::duration(&meant).is_ok().then_some((whole, meant))
 }
 
 /// `DT#2024-02-29 12:30:00`: how many tokens its time of day has after a space.
@@ -119,7 +137,10 @@ fn report(state: &mut State<'_, '_>, code: Code, whole: Span, fault: Fault) {
     let it = Diagnostic::new(code, span, fault.message);
     state.report(match fault.meant {
         Some(meant) => it.help(format!("write `{meant}`")).fix(whole, meant),
-        None => it,
+        None => match fault.help {
+            Some(help) => it.help(help),
+            None => it,
+        },
     });
 }
 
@@ -157,6 +178,10 @@ fn duration<'s>(state: &mut State<'_, 's>, at: usize) -> LiteralValue<'s> {
         Ok((ty, nanoseconds)) => return LiteralValue::Time { ty, nanoseconds },
         Err(fault) => fault,
     };
+    if let Some((whole, meant)) = decimal_comma(state, at) {
+        state.report(foreign_syntax::comma_for_point(whole, meant));
+        return LiteralValue::Error;
+    }
     if !lacks_unit(state, at) {
         report(state, Code::E0006, span, fault);
         return LiteralValue::Error;

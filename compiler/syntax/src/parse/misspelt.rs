@@ -3,11 +3,13 @@
 use crate::{
     ast::{Expr, ExprKind},
     lex::Kind,
+    spelling::abbreviates,
 };
 
 use super::{
+    diagnostics,
     parser::{In, TokenReader},
-    token_class::is_pou_end,
+    token_class::{is_pou_end, opens_item},
 };
 
 /// `ENDIF`, `ELSEIF`: the keyword that a name at the start of a statement stands for.
@@ -34,16 +36,37 @@ fn misspelt_word(word: &str) -> Option<Kind> {
 }
 
 /// The end that a name stands for, with the kind after it, and how many tokens that takes:
-/// `ENDIF`, `END_FOOR`, `END IF`.
-pub fn misspelt_end(word: &str, next: Kind) -> Option<(Kind, usize)> {
-    if word.eq_ignore_ascii_case("END") {
+/// `ENDIF`, `END_FOOR`, `END IF`, `END_PROG`. The ends of blocks that are `open`, from the innermost on, come first.
+pub fn misspelt_end(word: &str, next: Kind, open: impl Iterator<Item = Kind>) -> Option<(Kind, usize)> {
+    let rest = word.get(..3).filter(|it| it.eq_ignore_ascii_case("END")).and_then(|_| word.get(3..))?;
+    if rest.is_empty() {
         return misspelt_word(&format!("END{}", next.keyword()?)).map(|kind| (kind, 2));
     }
     if let Some(kind) = misspelt_word(word) {
         return Some((kind, 1));
     }
-    let ends = word.get(..3).is_some_and(|it| it.eq_ignore_ascii_case("END")) && word.len() > 4;
-    ends.then(|| nearest_of(word, ENDS)).flatten().map(|kind| (kind, 1))
+    let open: Vec<Kind> = open.collect();
+    let near = || (word.len() > 4).then(|| nearest_of(word, &open).or_else(|| nearest_of(word, ENDS))).flatten();
+    abbreviated_end(rest, &open).or_else(near).map(|kind| (kind, 1))
+}
+
+/// The end whose block a word names by its first letters, by some of its letters, or with letters after it: `_PROG`,
+/// `_FUNC_BLOCK`, `_FB`, `_VARS`. LOOP is any loop.
+fn abbreviated_end(rest: &str, open: &[Kind]) -> Option<Kind> {
+    let plain = |it: &str| it.replace('_', "").to_ascii_uppercase();
+    let stem = plain(rest);
+    if matches!(stem.as_str(), "LOOP" | "DO") {
+        let is_loop = |it: &&Kind| matches!(it, Kind::EndFor | Kind::EndWhile | Kind::EndRepeat);
+        return open.iter().find(is_loop).copied();
+    }
+    let find = |is: fn(&str, &str) -> bool| {
+        let own = |it: &Kind| it.keyword().and_then(|it| it.strip_prefix("END_")).map(plain);
+        open.iter().copied().find(|it| own(it).is_some_and(|own| is(&stem, &own)))
+    };
+    let is_long_enough = stem.len() > 1;
+    let by_first = |stem: &str, own: &str| own.starts_with(stem);
+    let by_more = |stem: &str, own: &str| stem.strip_prefix(own).is_some_and(|it| it.len() < 3);
+    is_long_enough.then(|| find(by_first).or_else(|| find(by_more)).or_else(|| find(abbreviates))).flatten()
 }
 
 const ENDS: &[Kind] = &[
@@ -89,8 +112,11 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
     }
     let span = input.here();
     let (word, next) = (input.text(span), input.kind_ahead(1));
-    if let Some(found) = misspelt_end(word, next) {
+    if let Some(found) = misspelt_end(word, next, open_ends(input)) {
         return Some(found);
+    }
+    if word.eq_ignore_ascii_case("FI") && waits_for(input, Kind::EndIf) {
+        return Some((Kind::EndIf, 1));
     }
     if word.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile) {
         return Some((Kind::EndWhile, 1));
@@ -102,7 +128,9 @@ pub fn misspelt(input: &mut In<'_, '_, '_>) -> Option<(Kind, usize)> {
         return Some((Kind::EndFor, if joined { 2 } else { 1 }));
     }
     if word.eq_ignore_ascii_case("END") || (word.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor)) {
-        return innermost(input).map(|end| (end, 1));
+        let after = usize::from(next == Kind::Semicolon) + 1;
+        let after = input.kind_ahead(after);
+        return innermost(input, after).map(|end| (end, 1));
     }
     let section = match word.to_ascii_uppercase().as_str() {
         "VARIN" | "VAR_IN" | "VARINPUT" | "VAR_INPUTS" => Some(Kind::VarInput),
@@ -140,13 +168,37 @@ pub fn is_misspelt_then(input: &mut In<'_, '_, '_>, word: Kind) -> bool {
     nearest_of(input.text(span), &[word]).is_some()
 }
 
+/// Takes and reports a word that stands for `end`, which is awaited: `END_REP`.
+pub fn takes_end(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
+    if input.kind() != Kind::Name {
+        return false;
+    }
+    let (span, next) = (input.here(), input.kind_ahead(1));
+    let Some((kind, words)) = misspelt_end(input.text(span), next, std::iter::once(end)) else { return false };
+    if kind != end {
+        return false;
+    }
+    for _ in 0..words {
+        input.take();
+    }
+    let whole = span.to(input.last());
+    diagnostics::misspelt_keyword(input, kind, whole);
+    true
+}
+
 fn waits_for(input: &mut In<'_, '_, '_>, end: Kind) -> bool {
     input.state().open.last().is_some_and(|(it, _)| *it == end)
 }
 
-/// The end of the innermost block of statements.
-fn innermost(input: &mut In<'_, '_, '_>) -> Option<Kind> {
-    input.state().open.last().map(|(end, _)| *end).filter(|it| !is_pou_end(*it))
+/// The ends of the open blocks, from the innermost on.
+fn open_ends<'i>(input: &'i mut In<'_, '_, '_>) -> impl Iterator<Item = Kind> + 'i {
+    input.state().open.iter().rev().map(|(end, _)| *end)
+}
+
+/// The end of the innermost block; that of a unit only where nothing of it can follow.
+fn innermost(input: &mut In<'_, '_, '_>, next: Kind) -> Option<Kind> {
+    let follows = next == Kind::End || opens_item(next);
+    open_ends(input).next().filter(|it| follows || !is_pou_end(*it))
 }
 
 /// `PROGRM Main`, `FUNCTION BLOCK f`: the keyword that opens an item.
@@ -171,8 +223,11 @@ pub fn misspelt_qualifier(input: &mut In<'_, '_, '_>) -> Option<Kind> {
 /// Whether a name that is alone is a misspelt keyword.
 pub fn is_misspelt(input: &mut In<'_, '_, '_>, target: &Expr<'_>) -> bool {
     let ExprKind::Name(name) = &target.kind else { return false };
-    (name.text.eq_ignore_ascii_case("END") && innermost(input).is_some())
+    let at = usize::from(input.kind() == Kind::Semicolon);
+    let next = input.kind_ahead(at);
+    (name.text.eq_ignore_ascii_case("END") && innermost(input, next).is_some())
+        || (name.text.eq_ignore_ascii_case("FI") && waits_for(input, Kind::EndIf))
         || (name.text.eq_ignore_ascii_case("NEXT") && waits_for(input, Kind::EndFor))
         || (name.text.eq_ignore_ascii_case("WEND") && waits_for(input, Kind::EndWhile))
-        || misspelt_end(name.text, Kind::Semicolon).is_some()
+        || misspelt_end(name.text, Kind::Semicolon, open_ends(input)).is_some()
 }

@@ -287,6 +287,7 @@ pub fn missing_word(input: &mut In<'_, '_, '_>, word: Kind, opened: Span) -> boo
         return true;
     }
     foreign_syntax::extra_brackets(input, word);
+    foreign_syntax::decimal_comma(input);
     if input.eat(word).is_some() {
         return true;
     }
@@ -397,6 +398,9 @@ pub fn end_of_declaration(input: &mut In<'_, '_, '_>) -> Parsed<()> {
     if foreign_syntax::wrong_terminator(input) {
         return Ok(());
     }
+    if star_after_type(input) && input.eat(Kind::Semicolon).is_some() {
+        return Ok(());
+    }
     let kind = input.kind();
     let next = ends_declarations(kind) || starts_declaration(input);
     if next || (input.on_new_line() && kind == Kind::Name) {
@@ -404,6 +408,24 @@ pub fn end_of_declaration(input: &mut In<'_, '_, '_>) -> Parsed<()> {
         return Ok(());
     }
     Err(input.problem(Expected::Token(Kind::Semicolon)))
+}
+
+/// `p : INT*`, after the `INT`.
+fn star_after_type(input: &mut In<'_, '_, '_>) -> bool {
+    let at = input.number();
+    let kinds = &input.state().tokens.kinds;
+    let follows = at
+        .checked_sub(2)
+        .and_then(|it| kinds.get(it..))
+        .is_some_and(|it| it.starts_with(&[Kind::Colon, Kind::Name, Kind::Star]));
+    if !follows {
+        return false;
+    }
+    let ty = input.last();
+    let span = ty.to(input.take());
+    let it = diagnostics::star_after_type(span, input.text(ty));
+    input.report(it);
+    true
 }
 
 /// Forward to where a problem is: rules may have gone back over what they read.

@@ -9,8 +9,8 @@ use crate::{
 
 use super::{
     block_ends, chart, declaration, diagnostics,
-    expression::{condition, expression, is_latch, postfix},
-    foreign_block, foreign_statement, foreign_syntax, misspelt, mock,
+    expression::{condition, expression, is_latch, postfix, unary},
+    foreign_block, foreign_expression, foreign_statement, foreign_syntax, misspelt, mock,
     parser::{Expected, In, Parsed, Problem, TokenReader, too_long},
     recovery, routine,
     token_class::{closes, ends_statements, opens_statement},
@@ -268,6 +268,7 @@ fn nonretentive<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<Stat
 
 fn assignment<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
     let mut value = expression(input)?;
+    foreign_expression::cast_after(input, &mut value);
     if input.kind() != Kind::Assign {
         return Ok(StatementKind::Assign { target, value });
     }
@@ -464,6 +465,10 @@ fn case<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
 }
 
 fn arm<'s>(input: &mut In<'_, '_, 's>) -> Option<Arm<'s>> {
+    if at_case_word(input) {
+        let it = diagnostics::case_before_label(input.take());
+        input.report(it);
+    }
     let start = input.here();
     let labels = labels(input);
     if let Err(problem) = labels {
@@ -482,6 +487,13 @@ fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
     }
     let mut labels = Vec::with_capacity(1);
     loop {
+        if is_arrow_label(input) {
+            let low = unary(input)?;
+            labels.push(Label { low, high: None });
+            let it = diagnostics::arrow_for_colon(input.take());
+            input.report(it);
+            return Ok(labels);
+        }
         let low = expression(input)?;
         let high = match input.eat(Kind::DotDot) {
             Some(_) => Some(expression(input)?),
@@ -503,6 +515,32 @@ fn labels<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Vec<Label<'s>>> {
     Ok(labels)
 }
 
+/// `CASE 1:` among the arms of a CASE, as other languages begin one.
+fn at_case_word(input: &mut In<'_, '_, '_>) -> bool {
+    if input.kind() != Kind::Case {
+        return false;
+    }
+    let mut ahead = 1;
+    while matches!(
+        input.kind_ahead(ahead),
+        Kind::Name | Kind::Dot | Kind::DotDot | Kind::Comma | Kind::Prefix | Kind::Integer | Kind::Based | Kind::Minus
+    ) {
+        ahead += 1;
+    }
+    ahead > 1 && input.kind_ahead(ahead) == Kind::Colon && input.kind_ahead(ahead + 1) != Kind::Equal
+}
+
+/// `1 =>`, `Idle =>`, as other languages end a label.
+fn is_arrow_label(input: &mut In<'_, '_, '_>) -> bool {
+    let first = usize::from(input.kind() == Kind::Minus);
+    let mut ahead = first + 1;
+    while input.kind_ahead(ahead) == Kind::Dot && input.kind_ahead(ahead + 1) == Kind::Name {
+        ahead += 2;
+    }
+    matches!(input.kind_ahead(first), Kind::Name | Kind::Integer | Kind::Based)
+        && input.kind_ahead(ahead) == Kind::Arrow
+}
+
 /// Whether the name that is next is one that a JMP names.
 fn is_jump_label(input: &mut In<'_, '_, '_>) -> bool {
     let span = input.here();
@@ -512,7 +550,7 @@ fn is_jump_label(input: &mut In<'_, '_, '_>) -> bool {
 
 /// Whether the tokens ahead are labels: constants up to a `:`. No statement starts with a number.
 fn at_label(input: &mut In<'_, '_, '_>) -> bool {
-    if matches!(input.kind(), Kind::Integer | Kind::Based | Kind::Minus | Kind::Prefix) {
+    if matches!(input.kind(), Kind::Integer | Kind::Based | Kind::Minus | Kind::Prefix) || at_case_word(input) {
         return true;
     }
     let mut ahead = 0;
@@ -520,6 +558,7 @@ fn at_label(input: &mut In<'_, '_, '_>) -> bool {
         match input.kind_ahead(ahead) {
             Kind::Colon if ahead == 1 && is_jump_label(input) => return false,
             Kind::Colon => return ahead > 0 && input.kind_ahead(ahead + 1) != Kind::Equal,
+            Kind::Arrow => return ahead > 0,
             Kind::Name | Kind::Dot | Kind::DotDot | Kind::Comma | Kind::Prefix => {}
             Kind::Integer | Kind::Based | Kind::Real | Kind::Time | Kind::Date => {}
             Kind::Text | Kind::WideText | Kind::True | Kind::False => {}
@@ -580,8 +619,13 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     let body = block(input, Kind::EndRepeat, opened);
     let Some(_) = input.eat(Kind::Until) else {
         if input.kind() == Kind::EndRepeat {
-            let problem = input.problem(Expected::Token(Kind::Until));
-            diagnostics::report(input, problem);
+            let next = usize::from(input.kind_ahead(1) == Kind::Semicolon) + 1;
+            if input.kind_ahead(next) == Kind::Until {
+                let until = until_after_end(input, opened)?;
+                return Ok(StatementKind::Repeat { body, until });
+            }
+            let it = diagnostics::no_until(input.here());
+            input.report(it);
         }
         close(input, Kind::EndRepeat, opened);
         return Ok(StatementKind::Repeat { body, until: unread(opened) });
@@ -594,6 +638,19 @@ fn repeat<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
     input.eat(Kind::Semicolon);
     close(input, Kind::EndRepeat, opened);
     Ok(StatementKind::Repeat { body, until: until.unwrap_or_else(|_| unread(opened)) })
+}
+
+/// `END_REPEAT UNTIL x;`, whose two ends are in the other order.
+fn until_after_end<'s>(input: &mut In<'_, '_, 's>, opened: Span) -> Parsed<Expr<'s>> {
+    let end = input.take();
+    input.eat(Kind::Semicolon);
+    input.take();
+    let until = condition(input)?;
+    let whole = end.to(until.span);
+    let it = diagnostics::until_after_end(whole, opened, input.text(until.span));
+    input.report(it);
+    input.eat(Kind::Semicolon);
+    Ok(until)
 }
 
 fn try_statement<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {

@@ -17,7 +17,7 @@ use super::{
     configuration::{bindings, configuration},
     declaration::{section, structure_members, type_spec},
     diagnostics, doc, foreign_types, misspelt, namespace,
-    parser::{Expected, In, TokenReader},
+    parser::{Expected, In, State, TokenReader},
     pragma::{attributes_here, external_here, pool_here},
     recovery,
     routine::{self, modifiers},
@@ -274,10 +274,21 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         }
     }
     pou.extent = opened.to(input.last());
+    name_after_end(input, name);
     if kind == PouKind::Class {
         report_parts_of_class(input, &mut pou);
     }
     Item::Pou(pou)
+}
+
+/// `END_PROGRAM Main`: takes the name.
+fn name_after_end(input: &mut In<'_, '_, '_>, name: Name<'_>) {
+    if !input.is_word(name.text) || input.on_new_line() {
+        return;
+    }
+    let span = input.take();
+    let it = diagnostics::name_after_end(span);
+    input.report(it);
 }
 
 /// Reports what a CLASS cannot have, and takes it out.
@@ -413,6 +424,12 @@ fn bases<'s>(input: &mut In<'_, '_, 's>, pou: &mut Pou<'s>, extends: Vec<Path<'s
     pou.extends = extends.first().copied().filter(|_| pou.kind.is_block());
 }
 
+/// A parameter as VAR_INPUT has it.
+fn declared(state: &State<'_, '_>, parameter: &VarDecl<'_>) -> String {
+    let names: Vec<_> = parameter.names.iter().map(|it| it.text).collect();
+    format!("{} : {};", names.join(", "), state.slice(parameter.ty.span))
+}
+
 /// `(x : INT; y : REAL)` after a function's name, as other languages have it.
 fn parameters<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     let names = name().separated_by(token(Kind::Comma)).at_least(1).collect::<Vec<_>>();
@@ -426,7 +443,8 @@ fn parameters<'t, 's: 't>() -> impl Rule<'t, 's, VarBlock<'s>> {
     let vars = vars.delimited_by(token(Kind::OpenParen), token(Kind::CloseParen));
     reported(vars, |vars: Vec<VarDecl<'s>>, state, tokens| {
         let (opened, whole) = (state.place(tokens.start), state.span(tokens));
-        state.report(diagnostics::parameters_in_head(whole, vars.is_empty()));
+        let declared: Vec<_> = vars.iter().map(|it| declared(state, it)).collect();
+        state.report(diagnostics::parameters_in_head(whole, &declared.join(" ")));
         VarBlock { vars, ..VarBlock::new(VarKind::Input, opened) }
     })
 }

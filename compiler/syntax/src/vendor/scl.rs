@@ -8,6 +8,7 @@ mod token;
 mod words;
 
 use super::assembly::{Assembly, Chunk, Trouble};
+use crate::spelling::abbreviates;
 use core::ops::Range;
 use counter::Counters;
 use rustc_hash::FxHashMap;
@@ -69,6 +70,7 @@ pub fn read(file: &str) -> Assembly {
         locals: FxHashMap::default(),
         has_enable: false,
         is_combined: false,
+        regions: Vec::new(),
         counters: Counters::default(),
     };
     reader.counters = reader.called_counters();
@@ -95,6 +97,8 @@ struct Scl<'t> {
     has_enable: bool,
     /// Whether the value of a combined assignment is being read.
     is_combined: bool,
+    /// The REGIONs that are open.
+    regions: Vec<Range<usize>>,
     counters: Counters,
 }
 
@@ -190,11 +194,42 @@ impl<'t> Scl<'t> {
             let word = end.split_at_checked(4).filter(|it| it.0.eq_ignore_ascii_case("END_"));
             if word.is_some_and(|it| it.1.eq_ignore_ascii_case(block.0)) {
                 let place = self.place(self.at);
+                self.open_regions(place.start);
+                self.replace(place, block.2);
+                self.at += 1;
+                return;
+            }
+            if word.is_some_and(|it| self.is_abbreviated_end(it.1, block.0)) {
+                let place = self.place(self.at);
+                self.open_regions(place.start);
+                self.copy_to(place.start);
+                self.out.problem(Trouble::Odd, format!("`{end}` is written `END_{}`", block.0), &place);
+                self.out.help(format!("write `END_{}`", block.0));
                 self.replace(place, block.2);
                 self.at += 1;
                 return;
             }
             self.simple();
+        }
+        self.open_regions(self.file.len());
+    }
+
+    /// Whether `ORG_BLOCK`, after `END_`, stands for the end of a block: no other end has this word.
+    fn is_abbreviated_end(&self, word: &str, block: &str) -> bool {
+        const INNER: [&str; 10] =
+            ["IF", "CASE", "FOR", "WHILE", "REPEAT", "VAR", "STRUCT", "CONST", "REGION", "DATA_BLOCK"];
+        let is_inner = INNER.iter().any(|it| word.eq_ignore_ascii_case(it));
+        let is_used = matches!(self.text(self.at + 1), ":" | "." | "(" | "[");
+        let plain = |it: &str| it.replace('_', "").to_ascii_uppercase();
+        !is_inner && !is_used && word.len() > 1 && self.is_body && abbreviates(&plain(word), &plain(block))
+    }
+
+    /// Reports the regions that are open where their block ends.
+    fn open_regions(&mut self, end: usize) {
+        for region in core::mem::take(&mut self.regions) {
+            self.copy_to(end);
+            self.out.problem(Trouble::Open, "the REGION that starts here is not closed".to_owned(), &region);
+            self.out.help("write `END_REGION` where it ends");
         }
     }
 
@@ -392,9 +427,15 @@ impl<'t> Scl<'t> {
                 while self.token(self.at).is_some_and(|it| it.place.start < end) {
                     self.at += 1;
                 }
+                self.regions.push(place.clone());
                 self.replace(place.start..end, "");
             }
             "END_REGION" => {
+                if self.regions.pop().is_none() {
+                    self.copy_to(place.start);
+                    self.out.problem(Trouble::SecondEnd, "no REGION is open here".to_owned(), &place);
+                    self.out.help("delete it, or write `REGION` where the region begins");
+                }
                 let has_end = self.text(self.at) == ";";
                 let end = if has_end { self.place(self.at).end } else { place.end };
                 self.at += usize::from(has_end);

@@ -37,7 +37,7 @@ pub fn missing_type_colon(input: &mut In<'_, '_, '_>) {
 pub fn type_first(state: &State<'_, '_>, ty: Span, name: Span) -> Diagnostic {
     let meant = format!("{} : {}", state.slice(name), state.slice(ty));
     let whole = ty.to(name);
-    Diagnostic::new(Code::E0001, whole, "the name is before the type")
+    Diagnostic::new(Code::E0001, whole, "a declaration is a name, `:` and a type")
         .label("expected a name, `:` and a type")
         .help(format!("write `{meant}`"))
         .fix(whole, meant)
@@ -79,8 +79,8 @@ pub fn outside_of_units(span: Span, statements: bool) -> Diagnostic {
 }
 
 /// `FUNCTION f(x : INT) : INT`, `PROGRAM p()`
-pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
-    if empty {
+pub fn parameters_in_head(span: Span, declared: &str) -> Diagnostic {
+    if declared.is_empty() {
         return Diagnostic::new(Code::E0020, span, "the name of a unit has no parentheses after it")
             .label("delete this")
             .help("delete them")
@@ -88,7 +88,7 @@ pub fn parameters_in_head(span: Span, empty: bool) -> Diagnostic {
     }
     Diagnostic::new(Code::E0020, span, "parameters are declared in VAR_INPUT, not in parentheses")
         .label("expected no parentheses")
-        .help("write `VAR_INPUT x : INT; END_VAR` on the next line")
+        .help(format!("write `VAR_INPUT {declared} END_VAR` on the next line"))
 }
 
 /// `ARRAY[10]`, `ARRAY[1:3]`, `ARRAY(1..3)`, `INT[10]`: what is wrong at `span`, and what is meant.
@@ -98,11 +98,28 @@ pub fn array_bounds(span: Span, found: &str, meant: &str) -> Diagnostic {
         .help(format!("write `{meant}`"))
 }
 
+/// `x : INT*`
+pub fn star_after_type(span: Span, ty: &str) -> Diagnostic {
+    let meant = format!("POINTER TO {ty}");
+    Diagnostic::new(Code::E0001, span, "a pointer is declared with POINTER TO")
+        .label(format!("expected `{meant}`"))
+        .help(format!("write `{meant}`"))
+        .fix(span, meant)
+}
+
 /// `Motor[3(9)]`
 pub fn repeated_arguments(span: Span, list: &str) -> Diagnostic {
     Diagnostic::new(Code::E0304, span, "a repeat count is not allowed for arguments of FB_init")
         .label("expected a list for each element")
         .help(format!("write each: `[{list}, {list}, …]`"))
+}
+
+/// `END_PROGRAM Main`
+pub fn name_after_end(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0020, span, "the end of a unit has no name after it")
+        .label("delete this")
+        .help("delete it")
+        .fix(span, "")
 }
 
 /// `STRUCT Name` outside of TYPE.
