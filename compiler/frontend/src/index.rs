@@ -46,6 +46,11 @@ pub struct Offer {
 }
 
 impl Index {
+    /// One that has all that a name could be, where one begins at a place.
+    pub(crate) fn asked(asked: Option<(u16, u32)>) -> Self {
+        Self { asked, ..Self::default() }
+    }
+
     /// Reads what the files declare.
     pub(crate) fn declare(&mut self, files: &[ast::File<'_>]) {
         self.definitions = outline::definitions(files);

@@ -137,7 +137,7 @@ pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
 /// theirs: the sources are given back with these. Where a name begins at the place that is `asked` about, the index has all
 /// that it could be.
 pub fn index(sources: &Sources, options: &Options, asked: Option<(u16, u32)>) -> (Index, Option<Sources>) {
-    let mut index = Index { asked, ..Index::default() };
+    let mut index = Index::asked(asked);
     let (diagnostics, extended) = match prelude::Extended::of(sources, options) {
         Some(extended) => {
             let found = run(&extended.sources, options, Bodies::Dropped, Some(&mut index)).diagnostics;
@@ -145,7 +145,8 @@ pub fn index(sources: &Sources, options: &Options, asked: Option<(u16, u32)>) ->
         }
         None => (run(sources, options, Bodies::Dropped, Some(&mut index)).diagnostics, None),
     };
-    (Index { diagnostics, ..index }, extended)
+    index.diagnostics = diagnostics;
+    (index, extended)
 }
 
 /// Whether the program that is made has the bodies of its POUs, or the calls in them alone.
