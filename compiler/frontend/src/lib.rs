@@ -9,6 +9,9 @@ mod testing;
 
 mod mutate;
 mod start;
+mod start_up;
+mod automation_studio;
+mod pooled;
 mod tasks;
 
 mod allow;
@@ -226,6 +229,7 @@ struct Trees<'s> {
 
 fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
     let sources = log.sources;
+    automation_studio::expand(&mut files, sources);
     let stubs = library::prepare(&mut files, sources);
     stubs.refused.iter().for_each(|it| log.report(library::c_code(*it)));
     let has_tests = testing::has_tests(&files);
@@ -240,6 +244,8 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.nonretentive)).for_each(|it| note_nonretentive(it, log));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
+    start_up::expand(&mut files);
+    pooled::expand(&mut files, log.options.default_pool);
     start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);

@@ -609,6 +609,10 @@ pub enum InitialKind<'s> {
     Value(Expr<'s>),
     Elements(Vec<Element<'s>>),
     Fields(Vec<(Name<'s>, Initial<'s>)>),
+    /// `a[1] := x, a[2] := y` in [`InitialKind::Fields`]: elements of the member `a`, by their indices.
+    Indexed(Vec<(Vec<Expr<'s>>, Initial<'s>)>),
+    /// `(x, y)`: the values of the first members.
+    Members(Vec<Initial<'s>>),
     /// `REF= x`
     Bind(Expr<'s>),
 }
