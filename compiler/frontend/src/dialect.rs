@@ -191,6 +191,11 @@ impl Dialect {
         matches!(self, Self::Siemens)
     }
 
+    /// A file may hold one object as its editor shows it, without END_FUNCTION_BLOCK and its like.
+    pub(crate) const fn exports_objects_without_ends(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// `delay.TON(…)` calls a timer or counter, by the instruction that it is the data of.
     pub const fn names_instructions(self) -> bool {
         matches!(self, Self::Siemens)

@@ -36,6 +36,8 @@ pub struct File<'s> {
     pub reserved: Option<Span>,
     /// For each `a += b`, which is read as `a := a + (b)`: what is reported where the dialect does not have it.
     pub combined: Vec<crate::Diagnostic>,
+    /// What is reported of a unit that the end of the file ends, where the dialect does not have that.
+    pub unclosed: Vec<crate::Diagnostic>,
     /// For each `x : BOOL AT %QX0.0` its address, and what is reported where the dialect does not have it.
     pub late_addresses: Vec<(Name<'s>, crate::Diagnostic)>,
     /// The targets of `a [:=] b`.

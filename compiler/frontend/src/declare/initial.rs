@@ -74,11 +74,13 @@ impl<'s> Declarations<'s> {
                 None
             }
             (InitialKind::Indexed(elements), Type::Array(_)) => {
-                let mut value = target.initial.clone();
+                let mut value = Some(target.initial.clone());
                 for (indices, initial) in elements {
-                    value = self.initial_of_element(value, target.ty, indices, initial, scope)?;
+                    let whole = value.clone().unwrap_or_else(|| target.initial.clone());
+                    let given = self.initial_of_element(whole, target.ty, indices, initial, scope);
+                    value = value.and(given);
                 }
-                Some(value)
+                value
             }
             (InitialKind::Members(values), Type::Struct(id)) => self.initial_members(values, id, target, initial.span, scope),
             (

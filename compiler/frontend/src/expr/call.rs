@@ -23,7 +23,7 @@ impl<'s> Checker<'_, 's> {
         arguments: &[ast::Argument<'s>],
         expected: Option<Type>,
     ) -> Option<Operand> {
-        let own = self.own_of_suite(callee).or_else(|| self.called_as_instruction(callee));
+        let own = self.own_of_suite(callee);
         let callee = own.as_ref().unwrap_or(callee);
         if let Some(value) = self.known_value(callee, arguments, expr.span) {
             return value;
@@ -119,7 +119,7 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
-        let own = self.own_of_suite(callee);
+        let own = self.own_of_suite(callee).or_else(|| self.called_as_instruction(callee));
         let callee = own.as_ref().unwrap_or(callee);
         if self.known_statement(callee, arguments, expr.span) {
             return;

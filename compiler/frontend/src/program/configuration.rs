@@ -55,6 +55,8 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     };
     let mut programs: Vec<_> = (0..declarations.written_pous().len()).filter(is_alone).collect();
     programs.sort_by_key(|at| !is_start_up(declarations.pous[*at].ast));
+    // What says that a PROGRAM runs at the start says that all run.
+    declarations.program.is_configured = programs.iter().any(|at| is_start_up(declarations.pous[*at].ast));
     for at in programs {
         if declarations.report_not_connected(at) {
             continue;
@@ -68,6 +70,9 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
             interval: None,
             priority: LOWEST_PRIORITY,
         });
+    }
+    if declarations.program.is_configured {
+        mark_listed(&mut declarations.program.instances, &declarations.program.classes);
     }
 }
 

@@ -304,7 +304,12 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
         let inner_opener = input.text(inner).to_ascii_uppercase();
         it = it.other(inner, format!("or this {inner_opener} is not: the end after it is in another column"));
     }
-    input.report(it.help(help));
+    let it = it.help(help);
+    let is_only_one = opened == input.state().first();
+    match kind == Kind::End && is_only_one && outer.is_empty() {
+        true => input.state().unclosed.push(it),
+        false => input.report(it),
+    }
 }
 
 /// `WHILE … END_IF`

@@ -96,7 +96,7 @@ impl Scl<'_> {
             let has_word = retains || self.is(self.at, "NON_RETAIN");
             let opened = if has_word { self.place(self.at).end } else { start.end };
             self.at += usize::from(has_word);
-            let section = if retains { "VAR RETAIN" } else { "VAR" };
+            let section = if retains { "VAR RETAIN\n" } else { "VAR\n" };
             self.replace(start.start..opened, if is_one { "" } else { section });
             retained |= retains;
             let mut depth = 0_usize;
@@ -110,7 +110,7 @@ impl Scl<'_> {
             let has_sign = self.text(self.at) == ";";
             let end = if has_sign { self.place(self.at).end } else { close.end };
             self.at += usize::from(has_sign);
-            self.replace(close.start..end, if is_one { "" } else { "END_VAR" });
+            self.replace(close.start..end, if is_one { "" } else { "END_VAR\n" });
             self.notes();
         }
         retained
