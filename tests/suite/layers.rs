@@ -12,9 +12,32 @@ const SYNTAX_LAYERS: [&str; 9] =
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 23] = [
-    "added", "allow", "declared", "testing", "mutate", "start", "tasks", "dialect", "options", "log", "locate",
-    "chart", "enabled", "prelude", "names", "inherit", "types", "expr", "declare", "body", "library", "program",
+const LAYERS: [&str; 26] = [
+    "added",
+    "allow",
+    "declared",
+    "testing",
+    "start_up",
+    "pooled",
+    "automation_studio",
+    "mutate",
+    "start",
+    "tasks",
+    "dialect",
+    "options",
+    "log",
+    "locate",
+    "chart",
+    "enabled",
+    "prelude",
+    "names",
+    "inherit",
+    "types",
+    "expr",
+    "declare",
+    "body",
+    "library",
+    "program",
     "lints",
 ];
 

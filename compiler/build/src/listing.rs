@@ -21,7 +21,9 @@ pub fn is_source(path: &Path) -> bool {
 /// Whether a file declares types or functions, as `.typ` and `.fun` of B&R's Automation Studio do.
 fn is_text_of_automation_studio(path: &Path) -> bool {
     let text = std::fs::read(path).unwrap_or_default();
-    ["END_TYPE", "END_FUNCTION"].iter().any(|it| text.windows(it.len()).any(|part| part.eq_ignore_ascii_case(it.as_bytes())))
+    ["END_TYPE", "END_FUNCTION"]
+        .iter()
+        .any(|it| text.windows(it.len()).any(|part| part.eq_ignore_ascii_case(it.as_bytes())))
 }
 
 /// Whether a file is a source of data blocks, or of variables; databases, and the pictures that Windows keeps, are called `.db` as well.

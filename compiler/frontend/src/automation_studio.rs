@@ -63,8 +63,7 @@ fn part_of(item: &Item<'_>) -> Option<&'static str> {
 /// The PROGRAM of a folder: what `_INIT` does runs once, before the first `_CYCLIC`. `_EXIT` runs where a program is taken off a
 /// controller: it is an ACTION here, which nothing calls.
 fn program<'s>(folder: &'s str, parts: Vec<Pou<'s>>, blocks: Vec<VarBlock<'s>>) -> Option<Pou<'s>> {
-    let mut parts: Vec<(bool, Pou<'s>)> =
-        parts.into_iter().map(|it| (Key(it.name.text) == Key(CYCLIC), it)).collect();
+    let mut parts: Vec<(bool, Pou<'s>)> = parts.into_iter().map(|it| (Key(it.name.text) == Key(CYCLIC), it)).collect();
     parts.sort_by_key(|it| !it.0);
     let (_, first) = parts.first()?;
     let at = first.name.span;
@@ -79,7 +78,8 @@ fn program<'s>(folder: &'s str, parts: Vec<Pou<'s>>, blocks: Vec<VarBlock<'s>>) 
             it if Key(it) == Key(INIT) => init.extend(part.body),
             it if Key(it) == Key(CYCLIC) => cyclic.extend(part.body),
             _ => {
-                let action = Pou { body: part.body, extent: part.extent, ..Pou::new(PouKind::Action, part.name, part.span) };
+                let action =
+                    Pou { body: part.body, extent: part.extent, ..Pou::new(PouKind::Action, part.name, part.span) };
                 program.routines.push(action);
             }
         }

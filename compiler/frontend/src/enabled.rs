@@ -42,7 +42,8 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &Log<'_>) {
 
 /// The blocks without an ENO of their own.
 fn blocks<'s>(files: &[File<'s>]) -> FxHashSet<Key<'s>> {
-    let standard = staunch_runtime::BLOCKS.iter().filter(|it| it.pin(ENO).or(it.pin(EN)).is_none()).map(|it| Key(it.name));
+    let standard =
+        staunch_runtime::BLOCKS.iter().filter(|it| it.pin(ENO).or(it.pin(EN)).is_none()).map(|it| Key(it.name));
     let mut blocks: FxHashSet<Key<'s>> = standard.collect();
     for item in files.iter().flat_map(|it| &it.items) {
         if let Item::Pou(pou) = item

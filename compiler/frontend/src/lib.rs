@@ -7,11 +7,11 @@ mod declared;
 mod enabled;
 mod testing;
 
+mod automation_studio;
 mod mutate;
+mod pooled;
 mod start;
 mod start_up;
-mod automation_studio;
-mod pooled;
 mod tasks;
 
 mod allow;

@@ -1,8 +1,6 @@
 //! The setting `[pool] default`: a pool for each type that `__NEW` names and that declares none.
 
-use crate::ast::{
-    Argument, ArgumentKind, Expr, ExprKind, File, Item, Pool, Pou, Statement, TypeKind, each_expr,
-};
+use crate::ast::{Argument, ArgumentKind, Expr, ExprKind, File, Item, Pool, Pou, Statement, TypeKind, each_expr};
 use crate::spelling::Key;
 use rustc_hash::FxHashSet;
 

@@ -351,9 +351,15 @@ PROGRAM Main VAR k, l : INT; END_VAR k := GVL.base; l := GVL.computed; END_PROGR
 fn a_folder_of_tia_portal_holds_types_and_data_blocks() {
     let files = [
         ("Part.udt", "TYPE \"Part\"\nVERSION : 0.1\n   STRUCT\n      weight : Int := 3;\n   END_STRUCT;\nEND_TYPE\n"),
-        ("Line.db", "DATA_BLOCK \"Line\"\nVERSION : 0.1\n   STRUCT\n      part : \"Part\";\n   END_STRUCT;\nBEGIN\nEND_DATA_BLOCK\n"),
+        (
+            "Line.db",
+            "DATA_BLOCK \"Line\"\nVERSION : 0.1\n   STRUCT\n      part : \"Part\";\n   END_STRUCT;\nBEGIN\nEND_DATA_BLOCK\n",
+        ),
         ("Thumbs.db", "\u{0}\u{1}\u{2}"),
-        ("Main.scl", "ORGANIZATION_BLOCK \"Main\"\nBEGIN\n\t\"Line\".part.weight := \"Line\".part.weight + 1;\nEND_ORGANIZATION_BLOCK\n"),
+        (
+            "Main.scl",
+            "ORGANIZATION_BLOCK \"Main\"\nBEGIN\n\t\"Line\".part.weight := \"Line\".part.weight + 1;\nEND_ORGANIZATION_BLOCK\n",
+        ),
     ];
     let folder = Folder::with("tia_folder", &files);
     let trace = folder.staunch("run . --scans 2 --vars Line.part.weight --trace -").out(0);
@@ -374,11 +380,15 @@ fn what_no_other_program_reads_is_named() {
 /// `_INIT` runs once, before `_CYCLIC`; the variables of a folder are its program's, others are global.
 #[test]
 fn programs_of_automation_studio_are_folders() {
-    let folder = Folder::with("automation_studio", &[("Global.var", "(* all *)\nVAR\n\tgCount : INT := 100;\nEND_VAR\n")]);
+    let folder =
+        Folder::with("automation_studio", &[("Global.var", "(* all *)\nVAR\n\tgCount : INT := 100;\nEND_VAR\n")]);
     for name in ["Press", "Lib"] {
         std::fs::create_dir_all(folder.0.join(name)).unwrap();
     }
-    folder.write("Press/Variables.var", "VAR\n\tstep : INT := 3;\n\tramp : MyRamp;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n");
+    folder.write(
+        "Press/Variables.var",
+        "VAR\n\tstep : INT := 3;\n\tramp : MyRamp;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n",
+    );
     folder.write("Press/Types.typ", "TYPE\n\tLevel : STRUCT\n\t\tx : INT;\n\tEND_STRUCT;\nEND_TYPE\n");
     folder.write(
         "Press/Main.st",
@@ -397,6 +407,7 @@ fn programs_of_automation_studio_are_folders() {
     let trace = folder.staunch("run . --scans 3 --vars Press.step,gCount --trace -").out(0);
     assert_eq!(trace, "scan,time_ms,Press.step,gCount\n1,0,5,112\n2,10,6,126\n3,20,6,141\n");
     // A mistake is where it is written.
-    folder.write("Press/Variables.var", "VAR\n\tstep : INT := 3;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n");
+    folder
+        .write("Press/Variables.var", "VAR\n\tstep : INT := 3;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n");
     has(&folder.staunch("check .").err(1), &["Press/Main.st:8:", "`ramp`"]);
 }

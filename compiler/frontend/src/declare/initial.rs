@@ -46,7 +46,8 @@ impl<'s> Declarations<'s> {
             }
             // `(x)` of a structure of one member is its value.
             (InitialKind::Value(ast::Expr { kind: ast::ExprKind::Paren(value), .. }), Type::Struct(id))
-                if self.dialect(initial.span).has_values_by_position() && self.program.structure(id).fields.len() == 1 =>
+                if self.dialect(initial.span).has_values_by_position()
+                    && self.program.structure(id).fields.len() == 1 =>
             {
                 let field = &self.program.structure(id).fields[0];
                 let target = Resolved { ty: field.ty, initial: field.initial.clone() };
@@ -64,7 +65,9 @@ impl<'s> Declarations<'s> {
                 if !self.dialect(initial.span).has_values_by_position() =>
             {
                 let (what, help) = match &initial.kind {
-                    InitialKind::Members(_) => ("an initial value without the names of the members", "`(member := value, …)`"),
+                    InitialKind::Members(_) => {
+                        ("an initial value without the names of the members", "`(member := value, …)`")
+                    }
                     _ => ("the initial value of one element", "the values of all elements: `[value, 3(value)]`"),
                 };
                 self.report(
@@ -82,12 +85,11 @@ impl<'s> Declarations<'s> {
                 }
                 value
             }
-            (InitialKind::Members(values), Type::Struct(id)) => self.initial_members(values, id, target, initial.span, scope),
+            (InitialKind::Members(values), Type::Struct(id)) => {
+                self.initial_members(values, id, target, initial.span, scope)
+            }
             (
-                InitialKind::Elements(_)
-                | InitialKind::Fields(_)
-                | InitialKind::Indexed(_)
-                | InitialKind::Members(_),
+                InitialKind::Elements(_) | InitialKind::Fields(_) | InitialKind::Indexed(_) | InitialKind::Members(_),
                 _,
             ) => {
                 let is_array = matches!(initial.kind, InitialKind::Elements(_) | InitialKind::Indexed(_));
@@ -337,7 +339,10 @@ impl<'s> Declarations<'s> {
         };
         let Type::Array(id) = ty else {
             let found = self.program.type_name(ty);
-            self.error(Code::E0201, index.span, format!("{found} has no elements"));
+            self.report(
+                Diagnostic::new(Code::E0201, index.span, format!("{found} has no elements"))
+                    .label("this index is one too many"),
+            );
             return None;
         };
         let array = self.program.array(id);
@@ -383,8 +388,11 @@ impl<'s> Declarations<'s> {
         if given.len() > fields.len() {
             let found = self.program.type_name(target.ty);
             self.report(
-                Diagnostic::new(Code::E0206, span, "there are more initial values than members")
-                    .label(format!("{} values for the {} members of {found}", given.len(), fields.len())),
+                Diagnostic::new(Code::E0206, span, "there are more initial values than members").label(format!(
+                    "{} values for the {} members of {found}",
+                    given.len(),
+                    fields.len()
+                )),
             );
             return None;
         }

@@ -158,7 +158,8 @@ impl<'s> Checker<'_, 's> {
     /// `valve.delay.TON(…)` of a TON: SCL names the instruction after its data.
     fn called_as_instruction(&self, callee: &ast::Expr<'s>) -> Option<ast::Expr<'s>> {
         let Ast::Member(instance, name) = &callee.kind else { return None };
-        let Some(Type::Block(id)) = self.static_type(instance).filter(|_| self.decl.dialect(name.span).names_instructions())
+        let Some(Type::Block(id)) =
+            self.static_type(instance).filter(|_| self.decl.dialect(name.span).names_instructions())
         else {
             return None;
         };

@@ -141,10 +141,9 @@ pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, types: &Types<'s>) -> Option
             InitialKind::Value(value) => {
                 is_address(value) || Expected::variable(&member.ty, types, None).by(value).is_some()
             }
-            InitialKind::Elements(_)
-            | InitialKind::Fields(_)
-            | InitialKind::Indexed(_)
-            | InitialKind::Members(_) => false,
+            InitialKind::Elements(_) | InitialKind::Fields(_) | InitialKind::Indexed(_) | InitialKind::Members(_) => {
+                false
+            }
         };
         if member.initial.as_ref().is_some_and(is_own) {
             member.started = member.initial.take();

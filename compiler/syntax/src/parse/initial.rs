@@ -58,7 +58,8 @@ fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
     let elements = delimited(Kind::OpenBracket, list_before(Kind::CloseBracket, element()), Kind::CloseBracket);
     let bound = ahead(|input| binds(input, 0)).ignore_then(binding());
     let given = token(Kind::Assign).ignore_then(initial());
-    let indices = delimited(Kind::OpenBracket, list(expr()), Kind::CloseBracket).repeated().at_least(1).collect::<Vec<_>>();
+    let indices =
+        delimited(Kind::OpenBracket, list(expr()), Kind::CloseBracket).repeated().at_least(1).collect::<Vec<_>>();
     let element = indices.then_ignore(token(Kind::Assign)).then(initial()).map_with(|(indices, value), extra| {
         let tokens = extra.span();
         let kind = InitialKind::Indexed(vec![(indices.into_iter().flatten().collect(), value)]);
@@ -78,7 +79,9 @@ fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
         ahead(opens_fields).ignore_then(fields).map(InitialKind::Fields),
         ahead(opens_members).ignore_then(members).map(InitialKind::Members),
         foreign_types::brace_list("[", "]").map(unread).map(InitialKind::Value),
-        ahead(|input| !opens_fields(input) && !opens_members(input) && !is_empty(input)).ignore_then(expr()).map(InitialKind::Value),
+        ahead(|input| !opens_fields(input) && !opens_members(input) && !is_empty(input))
+            .ignore_then(expr())
+            .map(InitialKind::Value),
     ));
     input.parse(nested(kind).map_with(|kind, extra| {
         let tokens = extra.span();

@@ -6,7 +6,8 @@ use super::scl::token::{Kind, Tokens};
 /// The blocks as VAR_GLOBAL; `None` where the file begins otherwise.
 pub fn variables(path: &str, text: &str) -> Option<Assembly> {
     let is_it = path.rsplit_once('.').is_some_and(|it| it.1.eq_ignore_ascii_case("var"));
-    let is_block = |it: &super::scl::token::Token| it.kind == Kind::Word && text[it.place.clone()].eq_ignore_ascii_case("VAR");
+    let is_block =
+        |it: &super::scl::token::Token| it.kind == Kind::Word && text[it.place.clone()].eq_ignore_ascii_case("VAR");
     let mut tokens = Tokens::new(text).filter(|it| it.kind != Kind::Pragma).peekable();
     if !is_it || !tokens.peek().is_some_and(is_block) {
         return None;

@@ -11,7 +11,6 @@ mod words;
 use super::assembly::{Assembly, Chunk, Trouble};
 use core::ops::Range;
 use counter::Counters;
-use organization::Event;
 use rustc_hash::FxHashMap;
 use staunch_ir::Elementary;
 use token::{Kind, Token};
@@ -79,6 +78,16 @@ pub fn read(file: &str) -> Assembly {
     }
     reader.copy_to(file.len());
     reader.out
+}
+
+/// What starts an organization block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Event {
+    /// It runs in each cycle, as OB 1.
+    Cycle,
+    /// It runs before the first cycle, as OB 100.
+    StartUp,
+    Unknown,
 }
 
 struct Scl<'t> {
@@ -167,7 +176,7 @@ impl<'t> Scl<'t> {
         }
         let head = self.place(self.at);
         let (name, place) = (self.global_name(self.at + 1), self.place(self.at + 1));
-        let event = (block.0 == "ORGANIZATION_BLOCK").then(|| organization::event(self, &name));
+        let event = (block.0 == "ORGANIZATION_BLOCK").then(|| self.event(&name));
         if event == Some(Event::StartUp) {
             self.copy_to(head.start);
             self.out.write("{attribute 'startup'}\n", &head);
@@ -435,7 +444,13 @@ impl<'t> Scl<'t> {
         let is_on_line = |it: &usize| self.token(*it).is_some_and(|it| it.place.start < line);
         let last = (at + 1..).take_while(is_on_line).last().unwrap_or(at);
         let is_statement = self.text(at + 1) != ";" && (at + 1..=last).any(|it| self.text(it) == ";");
-        if self.text(at + 1) == ";" { at + 1 } else if is_statement { at } else { last }
+        if self.text(at + 1) == ";" {
+            at + 1
+        } else if is_statement {
+            at
+        } else {
+            last
+        }
     }
 
     /// Whether a body, up to its end, sets its block's ENO or asks for it: each block has one, which is not declared.

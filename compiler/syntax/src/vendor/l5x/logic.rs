@@ -257,7 +257,11 @@ impl<'a> Writer<'a, '_> {
         }
         let is_tag = |it: &Scope| it.tags.contains(&key(name));
         // Where it may be an operator, it is one.
-        let own = || legal(name).filter(|_| !is_of_statements(name)).filter(|_| is_tag(scope) || is_tag(&self.logic.names.controller));
+        let own = || {
+            legal(name)
+                .filter(|_| !is_of_statements(name))
+                .filter(|_| is_tag(scope) || is_tag(&self.logic.names.controller))
+        };
         let piece = self.logic.names.meaning(name, scope).or_else(own).map_or(Piece::Itself, Piece::Words);
         (name.len(), piece)
     }

@@ -112,8 +112,33 @@ const WORDS: [&str; 39] = [
 
 /// Words of expressions and statements, which are names of members, and of tags that no Structured Text uses.
 const STATEMENT_WORDS: [&str; 27] = [
-    "AND", "BY", "CASE", "CONTINUE", "DO", "ELSE", "ELSIF", "END_CASE", "END_FOR", "END_IF", "END_REPEAT", "END_WHILE",
-    "EXIT", "FALSE", "FOR", "IF", "MOD", "NOT", "OF", "OR", "REPEAT", "RETURN", "THEN", "TRUE", "UNTIL", "WHILE", "XOR",
+    "AND",
+    "BY",
+    "CASE",
+    "CONTINUE",
+    "DO",
+    "ELSE",
+    "ELSIF",
+    "END_CASE",
+    "END_FOR",
+    "END_IF",
+    "END_REPEAT",
+    "END_WHILE",
+    "EXIT",
+    "FALSE",
+    "FOR",
+    "IF",
+    "MOD",
+    "NOT",
+    "OF",
+    "OR",
+    "REPEAT",
+    "RETURN",
+    "THEN",
+    "TRUE",
+    "UNTIL",
+    "WHILE",
+    "XOR",
 ];
 
 /// Whether a word means something in expressions and statements.

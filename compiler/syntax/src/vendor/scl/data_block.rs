@@ -96,7 +96,7 @@ impl Scl<'_> {
             let has_word = retains || self.is(self.at, "NON_RETAIN");
             let opened = if has_word { self.place(self.at).end } else { start.end };
             self.at += usize::from(has_word);
-            let section = if retains { "VAR RETAIN\n" } else { "VAR\n" };
+            let section = if retains { "VAR_INPUT RETAIN\n" } else { "VAR_INPUT\n" };
             self.replace(start.start..opened, if is_one { "" } else { section });
             retained |= retains;
             let mut depth = 0_usize;
