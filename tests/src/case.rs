@@ -98,6 +98,7 @@ impl Case {
                 ("s7-ld", value) => settings.options.s7_ld_edge = value == "edge",
                 ("openplc-f-trig", value) => settings.options.f_trig_before_2024_12 = value == "before-2024-12",
                 ("codesys-real-literals", value) => settings.options.codesys_lreal_literals = value == "lreal",
+                ("pool", value) => settings.options.default_pool = value.parse().ok(),
                 ("implicit-narrowing", value) => settings.options.implicit_narrowing = value == "on",
                 ("tests", value) => settings.options.tests = value == "on",
                 ("coverage", value) => settings.options.coverage = value.parse().ok(),

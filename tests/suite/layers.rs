@@ -12,10 +12,34 @@ const SYNTAX_LAYERS: [&str; 9] =
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 24] = [
-    "added", "allow", "declared", "index", "testing", "mutate", "start", "tasks", "dialect", "options", "log",
-    "locate", "chart", "enabled", "prelude", "names", "inherit", "types", "expr", "declare", "body", "library",
-    "program", "lints",
+const LAYERS: [&str; 27] = [
+    "added",
+    "allow",
+    "declared",
+    "index",
+    "testing",
+    "start_up",
+    "pooled",
+    "automation_studio",
+    "mutate",
+    "start",
+    "tasks",
+    "dialect",
+    "options",
+    "log",
+    "locate",
+    "chart",
+    "enabled",
+    "prelude",
+    "names",
+    "inherit",
+    "types",
+    "expr",
+    "declare",
+    "body",
+    "library",
+    "program",
+    "lints",
 ];
 
 const COMPARE: &str = "compiler/compare/src";

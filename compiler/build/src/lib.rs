@@ -55,6 +55,7 @@ pub struct Build {
     f_trig_before_2024_12: Option<bool>,
     codesys_lreal_literals: Option<bool>,
     implicit_narrowing: Option<bool>,
+    default_pool: Option<u32>,
     levels: Vec<(Level, String)>,
 }
 
@@ -135,6 +136,13 @@ impl Build {
     #[must_use]
     pub fn implicit_narrowing(mut self, narrows: bool) -> Self {
         self.implicit_narrowing = Some(narrows);
+        self
+    }
+
+    /// How many objects the pool of a type has that `__NEW` names and that declares none, as `[pool] default` says.
+    #[must_use]
+    pub fn default_pool(mut self, objects: u32) -> Self {
+        self.default_pool = Some(objects);
         self
     }
 
@@ -264,6 +272,7 @@ impl Build {
             f_trig_before_2024_12: self.f_trig_before_2024_12.unwrap_or(project.f_trig_before_2024_12),
             codesys_lreal_literals: self.codesys_lreal_literals.unwrap_or(project.codesys_lreal_literals),
             implicit_narrowing: self.implicit_narrowing.unwrap_or(project.implicit_narrowing),
+            default_pool: self.default_pool.or(project.default_pool),
             ..Default::default()
         };
         let mut levels = project.levels()?;

@@ -5,6 +5,7 @@ mod beremiz;
 mod openplc;
 
 use staunch_frontend::{Reference, Source};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// A solution names projects, these name PLC projects, and these sources.
@@ -12,7 +13,26 @@ const DEEPEST: usize = 4;
 
 /// Whether a folder's file is a source by its name.
 pub fn is_source(path: &Path) -> bool {
-    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio", "tctleo", "tctto", "l5x", "scl"])
+    has_extension(path, &["st", "iecst", "tcpou", "tcgvl", "tcdut", "tcio", "tctleo", "tctto", "l5x", "scl", "udt"])
+        || has_extension(path, &["db", "var"]) && is_data_block(path)
+        || has_extension(path, &["typ", "fun"]) && is_text_of_automation_studio(path)
+}
+
+/// Whether a file declares types or functions, as `.typ` and `.fun` of B&R's Automation Studio do.
+fn is_text_of_automation_studio(path: &Path) -> bool {
+    let text = std::fs::read(path).unwrap_or_default();
+    ["END_TYPE", "END_FUNCTION"]
+        .iter()
+        .any(|it| text.windows(it.len()).any(|part| part.eq_ignore_ascii_case(it.as_bytes())))
+}
+
+/// Whether a file is a source of data blocks, or of variables; databases, and the pictures that Windows keeps, are called `.db` as well.
+fn is_data_block(path: &Path) -> bool {
+    let mut begins = Vec::new();
+    let read = std::fs::File::open(path).map(|it| it.take(4096).read_to_end(&mut begins));
+    // What it holds decides, and of its name only that of a list of variables.
+    let name = if has_extension(path, &["var"]) { ".var" } else { "" };
+    read.is_ok() && Source::decode(name, &begins).is_assembled()
 }
 
 /// Whether a file lists others.

@@ -34,6 +34,8 @@ pub struct Project {
     /// `codesys-real-literals = "lreal"`.
     pub codesys_lreal_literals: bool,
     pub implicit_narrowing: bool,
+    /// How many objects the pool of a type has that declares none, `[pool] default`.
+    pub default_pool: Option<u32>,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
     pub allow: Vec<String>,
@@ -170,7 +172,7 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 24] = [
+const SETTINGS: [&str; 25] = [
     "dialect",
     "files",
     "libraries",
@@ -185,6 +187,7 @@ const SETTINGS: [&str; 24] = [
     "openplc-f-trig",
     "codesys-real-literals",
     "implicit-narrowing",
+    "pool",
     "warn",
     "deny",
     "allow",
@@ -216,6 +219,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "codesys-real-literals" => {
             project.codesys_lreal_literals = choice(key, value, &["place", "lreal"])? == "lreal";
         }
+        "pool" => project.default_pool = Some(default_pool(value)?),
         "implicit-narrowing" => project.implicit_narrowing = flag(key, value)?,
         "warn" => project.warn = texts(key, value)?,
         "deny" => project.deny = texts(key, value)?,
@@ -235,6 +239,17 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         }
     }
     Ok(())
+}
+
+/// `[pool] default = 16`
+fn default_pool(value: &toml::Value) -> Result<u32, String> {
+    let table = value.as_table().ok_or("`pool` must be a table with `default`")?;
+    if let Some(key) = table.keys().find(|it| *it != "default") {
+        return Err(format!("there is no setting `{key}` of `pool`; the only one is `default`"));
+    }
+    let count = table.get("default").ok_or("`pool` needs `default`, the number of objects")?;
+    let fits = count.as_integer().and_then(|it| u32::try_from(it).ok()).filter(|it| (1..=65535).contains(it));
+    fits.ok_or_else(|| "`default` of `pool` must be a number from 1 to 65535".to_owned())
 }
 
 fn text(key: &str, value: &toml::Value) -> Result<String, String> {

@@ -514,6 +514,7 @@ pub fn options(common: &Common, project: &Project) -> Result<Options, String> {
         f_trig_before_2024_12: project.f_trig_before_2024_12,
         codesys_lreal_literals: project.codesys_lreal_literals,
         implicit_narrowing: project.implicit_narrowing,
+        default_pool: project.default_pool,
         moved_from: None,
         tests: false,
         is_run: true,

@@ -14,10 +14,13 @@ pub(crate) const CLOCK: &str = "__chart";
 pub(crate) const ACTIONS: &str = "__actions";
 pub(crate) const FIRED: &str = "__fired";
 
+/// Whether a start-up PROGRAM has run.
+pub(crate) const STARTED_UP: &str = "__started_up";
+
 /// The ENO of each instance whose ENO is read.
 pub(crate) const ENOS: &str = "__enos";
 
 pub(crate) fn is_added(name: &str) -> bool {
     let pairs = [STARTED, KEPT, ADDRESSED];
-    pairs.iter().flatten().chain(&[RETAINS, CLOCK, ACTIONS, FIRED, ENOS]).any(|it| *it == name)
+    pairs.iter().flatten().chain(&[RETAINS, CLOCK, ACTIONS, FIRED, STARTED_UP, ENOS]).any(|it| *it == name)
 }

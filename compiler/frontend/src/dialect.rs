@@ -162,6 +162,11 @@ impl Dialect {
 
     /// Every block has ENO as an output that is read, `inst.ENO`.
     pub(crate) const fn has_enables_everywhere(self) -> bool {
+        matches!(self, Self::Openplc | Self::Openplc4)
+    }
+
+    /// Every block has EN as an input that is read, `inst.EN`.
+    pub(crate) const fn has_enabling_inputs(self) -> bool {
         matches!(self, Self::Openplc)
     }
 
@@ -179,6 +184,21 @@ impl Dialect {
     /// `:= ()`, an initial value that says nothing of any member.
     pub const fn has_empty_values(self) -> bool {
         matches!(self, Self::Siemens | Self::Codesys)
+    }
+
+    /// Initial values may name single elements, `(level[1] := 5)`, or give members by their positions, `(5, TRUE)`.
+    pub const fn has_values_by_position(self) -> bool {
+        matches!(self, Self::Siemens)
+    }
+
+    /// A file may hold one object as its editor shows it, without END_FUNCTION_BLOCK and its like.
+    pub(crate) const fn exports_objects_without_ends(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `delay.TON(…)` calls a timer or counter, by the instruction that it is the data of.
+    pub const fn names_instructions(self) -> bool {
+        matches!(self, Self::Siemens)
     }
 
     /// What a library declares is in a namespace of its own.

@@ -1,4 +1,5 @@
-//! `inst.ENO` of a block that does not declare it: every block of MATIEC has ENO, which is what EN was in its last call, and TRUE before.
+//! `inst.ENO` of a block that does not declare it: every block of MATIEC and STruC++ has ENO, which is what EN was in its last call, and TRUE
+//! before. In MATIEC `inst.EN` is read as well, and is the same.
 //! OpenPLC's editor reads it in the Structured Text that it generates. It becomes a variable of the POU, which the calls of the instance
 //! write.
 
@@ -14,11 +15,13 @@ use crate::testing::tree;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 const ENO: &str = "ENO";
+const EN: &str = "EN";
 
 /// Gives the POUs what they read of ENO.
 pub(crate) fn expand(files: &mut [File<'_>], log: &Log<'_>) {
     let has_it = |file: u16| log.dialect(Span { file, start: 0, end: 0 }).has_enables_everywhere();
-    let reads = |it: &crate::Source| it.text.contains(".ENO") || it.text.contains(".eno");
+    let is_read = |it: &[u8]| it.eq_ignore_ascii_case(b".EN");
+    let reads = |it: &crate::Source| it.text.as_bytes().windows(3).any(is_read);
     let files_read = log.sources.files().iter().zip(0u16..);
     let reading: Vec<bool> = files_read.map(|(it, number)| has_it(number) && reads(it)).collect();
     if !reading.contains(&true) {
@@ -31,7 +34,7 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &Log<'_>) {
                 && matches!(pou.kind, PouKind::Program | PouKind::FunctionBlock)
                 && log.dialect(pou.span).has_enables_everywhere()
             {
-                of_pou(pou, &blocks);
+                of_pou(pou, &blocks, log.dialect(pou.span).has_enabling_inputs());
             }
         }
     }
@@ -39,7 +42,8 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &Log<'_>) {
 
 /// The blocks without an ENO of their own.
 fn blocks<'s>(files: &[File<'s>]) -> FxHashSet<Key<'s>> {
-    let standard = staunch_runtime::BLOCKS.iter().filter(|it| it.pin(ENO).is_none()).map(|it| Key(it.name));
+    let standard =
+        staunch_runtime::BLOCKS.iter().filter(|it| it.pin(ENO).or(it.pin(EN)).is_none()).map(|it| Key(it.name));
     let mut blocks: FxHashSet<Key<'s>> = standard.collect();
     for item in files.iter().flat_map(|it| &it.items) {
         if let Item::Pou(pou) = item
@@ -48,7 +52,7 @@ fn blocks<'s>(files: &[File<'s>]) -> FxHashSet<Key<'s>> {
             let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
             let mut names = variables.chain(pou.routines.iter().map(|it| &it.name));
             // What one inherits may be called so.
-            match pou.extends.is_some() || names.any(|it| Key(it.text) == Key(ENO)) {
+            match pou.extends.is_some() || names.any(|it| [ENO, EN].map(Key).contains(&Key(it.text))) {
                 true => blocks.remove(&Key(pou.name.text)),
                 false => blocks.insert(Key(pou.name.text)),
             };
@@ -57,7 +61,7 @@ fn blocks<'s>(files: &[File<'s>]) -> FxHashSet<Key<'s>> {
     blocks
 }
 
-fn of_pou<'s>(pou: &mut Pou<'s>, blocks: &FxHashSet<Key<'s>>) {
+fn of_pou<'s>(pou: &mut Pou<'s>, blocks: &FxHashSet<Key<'s>>, reads_inputs: bool) {
     let mut instances: FxHashSet<Key<'s>> = FxHashSet::default();
     for decl in pou.blocks.iter().filter(|it| it.kind == VarKind::Var).flat_map(|it| &it.vars) {
         if let TypeKind::Named(path) = &decl.ty.kind
@@ -68,7 +72,7 @@ fn of_pou<'s>(pou: &mut Pou<'s>, blocks: &FxHashSet<Key<'s>>) {
     }
     let mut numbers = FxHashMap::default();
     each_expr(&pou.body, &mut |it| {
-        if let Some(name) = instance_read(it).filter(|it| instances.contains(&Key(it.text))) {
+        if let Some(name) = instance_read(it, reads_inputs).filter(|it| instances.contains(&Key(it.text))) {
             let next = numbers.len();
             numbers.entry(Key(name.text)).or_insert(next);
         }
@@ -77,15 +81,16 @@ fn of_pou<'s>(pou: &mut Pou<'s>, blocks: &FxHashSet<Key<'s>>) {
         return;
     }
     pou.blocks.push(kept(numbers.len(), pou.name.span));
-    let rewriter = Rewriter { numbers };
+    let rewriter = Rewriter { numbers, reads_inputs };
     rewriter.list(&mut pou.body);
 }
 
-/// The instance in `inst.ENO`.
-fn instance_read<'s>(expr: &Expr<'s>) -> Option<Name<'s>> {
+/// The instance in `inst.ENO`, or in `inst.EN`.
+fn instance_read<'s>(expr: &Expr<'s>, reads_inputs: bool) -> Option<Name<'s>> {
     let ExprKind::Member(owner, member) = &expr.kind else { return None };
     let ExprKind::Name(name) = &owner.kind else { return None };
-    member.text.eq_ignore_ascii_case(ENO).then_some(*name)
+    let is_input = reads_inputs && member.text.eq_ignore_ascii_case(EN);
+    (is_input || member.text.eq_ignore_ascii_case(ENO)).then_some(*name)
 }
 
 /// `__enos : ARRAY[0..n] OF BOOL := [n(TRUE)];`
@@ -102,6 +107,7 @@ fn kept<'s>(count: usize, at: Span) -> VarBlock<'s> {
 
 struct Rewriter<'s> {
     numbers: FxHashMap<Key<'s>, usize>,
+    reads_inputs: bool,
 }
 
 impl<'s> Rewriter<'s> {
@@ -157,6 +163,8 @@ impl<'s> Rewriter<'s> {
             | StatementKind::Continue
             | StatementKind::Return
             | StatementKind::Error => {}
+            // What is given to an input is not what it was in the last call.
+            StatementKind::Assign { target, value } if instance_read(target, true).is_some() => self.expr(value),
             StatementKind::Assign { target, value }
             | StatementKind::SetReset { target, value, .. }
             | StatementKind::Bind { target, value }
@@ -197,7 +205,7 @@ impl<'s> Rewriter<'s> {
     }
 
     fn expr(&self, expr: &mut Expr<'s>) {
-        if let Some(number) = instance_read(expr).and_then(|it| self.numbers.get(&Key(it.text))) {
+        if let Some(number) = instance_read(expr, self.reads_inputs).and_then(|it| self.numbers.get(&Key(it.text))) {
             *expr = self.kept(*number, expr.span);
             return;
         }

@@ -8,8 +8,11 @@ mod enabled;
 mod index;
 mod testing;
 
+mod automation_studio;
 mod mutate;
+mod pooled;
 mod start;
+mod start_up;
 mod tasks;
 
 mod allow;
@@ -258,6 +261,7 @@ struct Trees<'s> {
 
 fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
     let sources = log.sources;
+    automation_studio::expand(&mut files, sources);
     let stubs = library::prepare(&mut files, sources);
     stubs.refused.iter().for_each(|it| log.report(library::c_code(*it)));
     let has_tests = testing::has_tests(&files);
@@ -267,11 +271,14 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     files.iter().filter_map(|it| it.reserved).for_each(|it| report_reserved(it, log));
     chart::expand(&mut files, log);
     enabled::expand(&mut files, log);
+    files.iter_mut().flat_map(|it| std::mem::take(&mut it.unclosed)).for_each(|it| report_unclosed(it, log));
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.combined)).for_each(|it| report_combined(it, log));
     locate::resolve(&mut files, log);
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.nonretentive)).for_each(|it| note_nonretentive(it, log));
     inherit::expand(&mut files, log);
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
+    start_up::expand(&mut files);
+    pooled::expand(&mut files, log.options.default_pool);
     start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
@@ -296,6 +303,21 @@ fn report_combined(problem: Diagnostic, log: &mut Log<'_>) {
     if !log.dialect(problem.span).combines_assignments() {
         log.report(problem);
     }
+}
+
+/// Reports a unit without its end. CODESYS's editors show none, and so do the texts of single objects that are copied from there.
+fn report_unclosed(problem: Diagnostic, log: &mut Log<'_>) {
+    if log.dialect(problem.span).exports_objects_without_ends() {
+        let opened = problem.others.first().map_or(problem.span, |it| it.span);
+        let end = problem.span;
+        return log.report(
+            Diagnostic::new(Code::W0531, opened, "this unit ends with its file, as an object of CODESYS does")
+                .label("its end is not written")
+                .other(end, "if the file goes on in the original, a part is missing here")
+                .help(problem.help.unwrap_or_default()),
+        );
+    }
+    log.report(problem);
 }
 
 /// Reports a name that is a word of the standard's, in dialects that keep it for that.
@@ -326,7 +348,9 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
         files.push(parse::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again, and JSON, which is one pragma.
-        let is_wrong = diagnostics[before..].iter().any(|it| it.severity == Severity::Error);
+        let unclosed = files.last_mut().map(|it| it.unclosed.as_mut_slice()).unwrap_or_default();
+        unclosed.iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
+        let is_wrong = !unclosed.is_empty() || diagnostics[before..].iter().any(|it| it.severity == Severity::Error);
         if !source.is_assembled() && (is_wrong || foreign::is_json(source)) {
             foreign.extend(foreign::recognise(number, source));
         }

@@ -21,6 +21,8 @@ pub struct Options {
     pub codesys_lreal_literals: bool,
     /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
     pub implicit_narrowing: bool,
+    /// How many objects the pool of a type has that `__NEW` names and that declares none.
+    pub default_pool: Option<u32>,
     /// The dialect that the sources were written in, where `dialect` is the one they move to:
     /// its pragma then means the new dialect, and a pin by its old name is a lint.
     pub moved_from: Option<Dialect>,

@@ -382,6 +382,7 @@ pub const UNITS: &[Unit] = units! {
     Function "IS_VALID"         "is_valid";
     Function "IS_VALID_BCD"     "is_valid_bcd";
     Space    "System.Timer"     "system_timer";
+    Space    "System.Counters"  "system_counters";
     Space    "System.Strings"   "system_strings";
     Space    "System.Math"      "system_math";
     Space    "System.DateTime"  "system_datetime"  "SPLIT_LDT" "SPLIT_DATE" "SPLIT_LTOD";

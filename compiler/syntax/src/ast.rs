@@ -36,6 +36,8 @@ pub struct File<'s> {
     pub reserved: Option<Span>,
     /// For each `a += b`, which is read as `a := a + (b)`: what is reported where the dialect does not have it.
     pub combined: Vec<crate::Diagnostic>,
+    /// What is reported of a unit that the end of the file ends, where the dialect does not have that.
+    pub unclosed: Vec<crate::Diagnostic>,
     /// For each `x : BOOL AT %QX0.0` its address, and what is reported where the dialect does not have it.
     pub late_addresses: Vec<(Name<'s>, crate::Diagnostic)>,
     /// The targets of `a [:=] b`.
@@ -609,6 +611,10 @@ pub enum InitialKind<'s> {
     Value(Expr<'s>),
     Elements(Vec<Element<'s>>),
     Fields(Vec<(Name<'s>, Initial<'s>)>),
+    /// `a[1] := x, a[2] := y` in [`InitialKind::Fields`]: elements of the member `a`, by their indices.
+    Indexed(Vec<(Vec<Expr<'s>>, Initial<'s>)>),
+    /// `(x, y)`: the values of the first members.
+    Members(Vec<Initial<'s>>),
     /// `REF= x`
     Bind(Expr<'s>),
 }

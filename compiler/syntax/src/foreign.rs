@@ -16,7 +16,8 @@ const EXPORT: &str = "export the program as text, and check that";
 /// What a file that does not parse turns out to be.
 pub fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
     let text = source.text.as_str();
-    let kind = binary(text)
+    let kind = protected(&source.path, text)
+        .or_else(|| binary(text))
         .or_else(|| xml(text))
         .or_else(|| json(text))
         .or_else(|| python(text))
@@ -30,12 +31,36 @@ pub fn recognise(file: u16, source: &Source) -> Option<Diagnostic> {
     let offset = |it: usize| u32::try_from(it).unwrap_or(u32::MAX);
     let span = Span { file, start: offset(kind.at), end: offset(end) };
     // Of a binary file nothing can be shown.
-    let span = if kind.name.contains("binary") || kind.name.contains("archive") {
-        Span { end: span.start, ..span }
-    } else {
-        span
-    };
+    let span = if binary(text).is_some() { Span { end: span.start, ..span } } else { span };
     Some(Diagnostic::new(Code::E0032, span, format!("this is {}, not Structured Text", kind.name)).help(kind.help))
+}
+
+/// Files that no other program reads, since they are binary and have the name of a text, or of a project.
+fn protected(path: &str, text: &str) -> Option<Kind> {
+    const TWINCAT: [&str; 6] = ["tcpou", "tcgvl", "tcdut", "tcio", "tctleo", "tctto"];
+    let extension = path.rsplit_once('.').map_or(String::new(), |it| it.1.to_ascii_lowercase());
+    let of = |name, help| Some(Kind { name, at: 0, help });
+    binary(text)?;
+    match extension.as_str() {
+        it if TWINCAT.contains(&it) => of(
+            "an encrypted file of TwinCAT",
+            "take the encryption off in the project's security settings, and save it",
+        ),
+        "project" => of("a project of CODESYS", "export it in CODESYS as PLCopen XML, and check that"),
+        "library" | "compiled-library" | "compiled-library-v3" => of(
+            "a library of CODESYS or TwinCAT",
+            "name its sources, or declarations of what it holds, in `libraries` of staunch.toml",
+        ),
+        "acd" => of("a project of Logix Designer", "export it as L5X, and check that"),
+        "scl" | "udt" | "db" => of(
+            "a binary file",
+            "generate a source from the blocks in TIA Portal, without know-how protection, and check that",
+        ),
+        it if it.starts_with("zap") || it.starts_with("ap1") || it.starts_with("ap2") => {
+            of("a project of TIA Portal", "generate sources (.scl, .udt, .db) from its blocks, and check these")
+        }
+        _ => None,
+    }
 }
 
 fn binary(text: &str) -> Option<Kind> {

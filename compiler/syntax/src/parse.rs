@@ -92,6 +92,7 @@ pub fn parse_with<'s>(
     let items = parse_items(&mut state);
     let (mut found, braces, regions, bindings) = (state.diagnostics, state.braces, state.regions, state.bindings);
     let (combined, nonretentive, late_addresses) = (state.combined, state.nonretentive, state.late_addresses);
+    let unclosed = state.unclosed;
     found.append(&mut tokens.diagnostics);
     tokens.pragmas.retain(|it| !braces.contains(&it.span));
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
@@ -107,6 +108,7 @@ pub fn parse_with<'s>(
         undecided,
         reserved,
         combined,
+        unclosed,
         late_addresses,
         nonretentive,
         c_code,

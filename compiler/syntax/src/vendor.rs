@@ -2,6 +2,7 @@
 //! order of the language, with what of the file is no Structured Text.
 
 mod assembly;
+mod automation_studio;
 mod device;
 mod diagram;
 mod exp;
@@ -47,9 +48,9 @@ pub fn read(text: &str) -> Option<Assembly> {
 
 /// The Structured Text in a file that is called as a source of SCL is, or as a file of OpenPLC Editor.
 pub fn read_named(path: &str, text: &str) -> Option<Assembly> {
-    let extension = path.rsplit_once('.').map_or("", |it| it.1);
-    let named = || extension.eq_ignore_ascii_case("scl").then(|| scl::read(text));
-    openplc::read(path, text).or_else(|| read(text)).or_else(named)
+    let named = || (is_scl_name(path) && !text.contains('\0')).then(|| scl::read(text));
+    let variables = || automation_studio::variables(path, text);
+    openplc::read(path, text).or_else(variables).or_else(|| read(text)).or_else(named)
 }
 
 /// The parts of a TwinCAT 3 file that are Structured Text, each as it is.
@@ -61,7 +62,13 @@ pub fn texts_of_twincat(file: &str) -> Option<Vec<core::ops::Range<usize>>> {
 
 /// Whether a file holds Structured Text in the form of a system's editor, and is not Structured Text itself.
 pub fn is_of_other_editor(path: &str, text: &str) -> bool {
-    !scl::is_source(text) && !path.to_ascii_lowercase().ends_with(".scl") && read_named(path, text).is_some()
+    !scl::is_source(text) && !is_scl_name(path) && read_named(path, text).is_some()
+}
+
+/// Whether a file with this name is a source of TIA Portal: of blocks, of a data type, of data blocks.
+fn is_scl_name(path: &str) -> bool {
+    let extension = path.rsplit_once('.').map_or("", |it| it.1);
+    ["scl", "udt", "db"].iter().any(|it| it.eq_ignore_ascii_case(extension))
 }
 
 /// Whether a file with this name is a TwinCAT 3 file.

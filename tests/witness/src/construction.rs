@@ -2,7 +2,7 @@
 //! declaration, METHODs with `call_after_init`. Initial values that are addresses are assigned then, too.
 
 use crate::calls::Passed;
-use crate::machine::{Frame, Machine, Outcome};
+use crate::machine::{Frame, Machine, Outcome, unknown};
 use crate::starts::Assigns;
 use crate::storage::{Place, Value};
 use crate::types::{Slot, Type};
@@ -101,6 +101,9 @@ impl<'a> Machine<'a> {
                     }
                 }
                 Ok(())
+            }
+            InitialKind::Indexed(_) | InitialKind::Members(_) => {
+                unknown("initial values of SCL, by index and by position")
             }
             InitialKind::Value(_) | InitialKind::Bind(_) => Ok(()),
         }

@@ -66,6 +66,9 @@ impl<'a> Machine<'a> {
                 }
                 Ok(())
             }
+            Some(InitialKind::Indexed(_) | InitialKind::Members(_)) => {
+                unknown("initial values of SCL, by index and by position")
+            }
             Some(InitialKind::Fields(fields)) => {
                 self.start_unset(frame, place)?;
                 for (name, initial) in fields {

@@ -345,3 +345,69 @@ PROGRAM Main VAR k, l : INT; END_VAR k := GVL.base; l := GVL.computed; END_PROGR
         assert_eq!(ran.out(0), "scan,time_ms,k,l\n1,0,4,8\n");
     }
 }
+
+/// TIA Portal exports data types and data blocks in files of their own; a picture cache of Windows is called `.db`, too.
+#[test]
+fn a_folder_of_tia_portal_holds_types_and_data_blocks() {
+    let files = [
+        ("Part.udt", "TYPE \"Part\"\nVERSION : 0.1\n   STRUCT\n      weight : Int := 3;\n   END_STRUCT;\nEND_TYPE\n"),
+        (
+            "Line.db",
+            "DATA_BLOCK \"Line\"\nVERSION : 0.1\n   STRUCT\n      part : \"Part\";\n   END_STRUCT;\nBEGIN\nEND_DATA_BLOCK\n",
+        ),
+        ("Thumbs.db", "\u{0}\u{1}\u{2}"),
+        (
+            "Main.scl",
+            "ORGANIZATION_BLOCK \"Main\"\nBEGIN\n\t\"Line\".part.weight := \"Line\".part.weight + 1;\nEND_ORGANIZATION_BLOCK\n",
+        ),
+    ];
+    let folder = Folder::with("tia_folder", &files);
+    let trace = folder.staunch("run . --scans 2 --vars Line.part.weight --trace -").out(0);
+    assert_eq!(trace, "scan,time_ms,Line.part.weight\n1,0,4\n2,10,5\n");
+}
+
+#[test]
+fn what_no_other_program_reads_is_named() {
+    let binary = "\u{0}\u{1}\u{2}\u{0}";
+    let files = [("Main.TcPOU", binary), ("Line.project", binary), ("Tools.library", binary), ("Line.ACD", binary)];
+    let folder = Folder::with("protected", &files);
+    has(&folder.staunch("check Main.TcPOU").err(1), &["an encrypted file of TwinCAT", "take the encryption off"]);
+    has(&folder.staunch("check Line.project").err(1), &["a project of CODESYS", "PLCopen XML"]);
+    has(&folder.staunch("check Tools.library").err(1), &["a library of CODESYS or TwinCAT", "`libraries`"]);
+    has(&folder.staunch("check Line.ACD").err(1), &["a project of Logix Designer", "L5X"]);
+}
+
+/// `_INIT` runs once, before `_CYCLIC`; the variables of a folder are its program's, others are global.
+#[test]
+fn programs_of_automation_studio_are_folders() {
+    let folder =
+        Folder::with("automation_studio", &[("Global.var", "(* all *)\nVAR\n\tgCount : INT := 100;\nEND_VAR\n")]);
+    for name in ["Press", "Lib"] {
+        std::fs::create_dir_all(folder.0.join(name)).unwrap();
+    }
+    folder.write(
+        "Press/Variables.var",
+        "VAR\n\tstep : INT := 3;\n\tramp : MyRamp;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n",
+    );
+    folder.write("Press/Types.typ", "TYPE\n\tLevel : STRUCT\n\t\tx : INT;\n\tEND_STRUCT;\nEND_TYPE\n");
+    folder.write(
+        "Press/Main.st",
+        "PROGRAM _INIT\n\tstep := 4;\n\tgCount := gCount + 1;\nEND_PROGRAM\n\nPROGRAM _CYCLIC\n\tIF step < MOST THEN step := step + 1; END_IF;\n\
+         \tramp(up := TRUE);\n\tgCount := gCount + ramp.out + Twice(step);\nEND_PROGRAM\n\nPROGRAM _EXIT\n\tstep := 0;\nEND_PROGRAM\n",
+    );
+    folder.write(
+        "Lib/Lib.fun",
+        "FUNCTION_BLOCK MyRamp\n\tVAR_INPUT\n\t\tup : BOOL;\n\tEND_VAR\n\tVAR_OUTPUT\n\t\tout : INT;\n\tEND_VAR\nEND_FUNCTION_BLOCK\n\
+         FUNCTION Twice : INT\n\tVAR_INPUT\n\t\tx : INT;\n\tEND_VAR\nEND_FUNCTION\n",
+    );
+    folder.write(
+        "Lib/Lib.st",
+        "FUNCTION_BLOCK MyRamp\n\tIF up THEN out := out + 1; END_IF\nEND_FUNCTION_BLOCK\nFUNCTION Twice\n\tTwice := 2 * x;\nEND_FUNCTION\n",
+    );
+    let trace = folder.staunch("run . --scans 3 --vars Press.step,gCount --trace -").out(0);
+    assert_eq!(trace, "scan,time_ms,Press.step,gCount\n1,0,5,112\n2,10,6,126\n3,20,6,141\n");
+    // A mistake is where it is written.
+    folder
+        .write("Press/Variables.var", "VAR\n\tstep : INT := 3;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n");
+    has(&folder.staunch("check .").err(1), &["Press/Main.st:8:", "`ramp`"]);
+}

@@ -46,6 +46,15 @@ impl<'s> Declarations<'s> {
                 self.report_assigned_reference(expr);
                 None
             }
+            // `(x)` of a structure of one member is its value.
+            (InitialKind::Value(ast::Expr { kind: ast::ExprKind::Paren(value), .. }), Type::Struct(id))
+                if self.dialect(initial.span).has_values_by_position()
+                    && self.program.structure(id).fields.len() == 1 =>
+            {
+                let field = &self.program.structure(id).fields[0];
+                let target = Resolved { ty: field.ty, initial: field.initial.clone() };
+                Some(collapse(vec![self.initial_value(value, &target, scope)?]))
+            }
             (InitialKind::Value(expr), _) => self.initial_value(expr, target, scope),
             (InitialKind::Bind(expr), _) => {
                 self.not_supported(expr.span, "an address as an initial value here");
@@ -54,8 +63,39 @@ impl<'s> Declarations<'s> {
             (InitialKind::Elements(elements), Type::Array(id)) => self.initial_array(elements, id, scope, initial.span),
             (InitialKind::Fields(fields), Type::Struct(id)) => self.initial_struct(fields, id, target, scope),
             (InitialKind::Fields(fields), Type::Block(id)) => self.initial_block(fields, id, target, scope),
-            (InitialKind::Elements(_) | InitialKind::Fields(_), _) => {
-                let shape = if matches!(initial.kind, InitialKind::Elements(_)) { "an array" } else { "a structure" };
+            (InitialKind::Indexed(_) | InitialKind::Members(_), _)
+                if !self.dialect(initial.span).has_values_by_position() =>
+            {
+                let (what, help) = match &initial.kind {
+                    InitialKind::Members(_) => {
+                        ("an initial value without the names of the members", "`(member := value, …)`")
+                    }
+                    _ => ("the initial value of one element", "the values of all elements: `[value, 3(value)]`"),
+                };
+                self.report(
+                    Diagnostic::new(Code::E0902, initial.span, format!("{what} is not Structured Text"))
+                        .help(format!("write {help}")),
+                );
+                None
+            }
+            (InitialKind::Indexed(elements), Type::Array(_)) => {
+                let mut value = Some(target.initial.clone());
+                for (indices, initial) in elements {
+                    let whole = value.clone().unwrap_or_else(|| target.initial.clone());
+                    let given = self.initial_of_element(whole, target.ty, indices, initial, scope);
+                    value = value.and(given);
+                }
+                value
+            }
+            (InitialKind::Members(values), Type::Struct(id)) => {
+                self.initial_members(values, id, target, initial.span, scope)
+            }
+            (
+                InitialKind::Elements(_) | InitialKind::Fields(_) | InitialKind::Indexed(_) | InitialKind::Members(_),
+                _,
+            ) => {
+                let is_array = matches!(initial.kind, InitialKind::Elements(_) | InitialKind::Indexed(_));
+                let shape = if is_array { "an array" } else { "a structure" };
                 let found = self.program.type_name(target.ty);
                 let error =
                     Diagnostic::new(Code::E0201, initial.span, format!("{shape} value cannot initialise {found}"))
@@ -295,6 +335,85 @@ impl<'s> Declarations<'s> {
                 continue;
             }
             let resolved = Resolved { ty: field.ty, initial: field.initial.clone() };
+            values[at] = self.initial(initial, &resolved, scope)?;
+        }
+        Some(collapse(values))
+    }
+
+    /// `whole` with a value for one of its elements, by the indices that are left.
+    fn initial_of_element(
+        &mut self,
+        whole: Const,
+        ty: Type,
+        indices: &'s [ast::Expr<'s>],
+        initial: &'s ast::Initial<'s>,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Const> {
+        let Some((index, rest)) = indices.split_first() else {
+            return self.initial(initial, &Resolved { ty, initial: whole }, scope);
+        };
+        let Type::Array(id) = ty else {
+            let found = self.program.type_name(ty);
+            self.report(
+                Diagnostic::new(Code::E0201, index.span, format!("{found} has no elements"))
+                    .label("this index is one too many"),
+            );
+            return None;
+        };
+        let array = self.program.array(id);
+        let number = self.constant_integer(index, scope)?;
+        let position = u64::try_from(number.saturating_sub(i128::from(array.low))).ok().filter(|it| *it < array.len());
+        let Some(position) = position else {
+            self.report(
+                Diagnostic::new(Code::E0206, index.span, format!("the array has no element {number}"))
+                    .label(format!("expected {} to {}", array.low, array.high)),
+            );
+            return None;
+        };
+        let runs = match whole {
+            Const::Array(runs) => runs,
+            Const::Zero | Const::Scalar(_) | Const::Text(_) | Const::Struct(_) => vec![(array.len(), Const::Zero)],
+        };
+        let (mut given, mut at) = (Runs { runs: Vec::new(), len: 0 }, 0);
+        for (count, value) in runs {
+            if (at..at + count).contains(&position) {
+                let before = position - at;
+                given.push(before, value.clone());
+                let element = self.initial_of_element(value.clone(), array.element, rest, initial, scope)?;
+                given.push(1, element);
+                given.push(count - before - 1, value);
+            } else {
+                given.push(count, value);
+            }
+            at += count;
+        }
+        Some(if given.runs.iter().all(|it| it.1 == Const::Zero) { Const::Zero } else { Const::Array(given.runs) })
+    }
+
+    /// `(x, y)`: the values of the first members, in the order in which they are declared.
+    fn initial_members(
+        &mut self,
+        given: &'s [ast::Initial<'s>],
+        id: StructId,
+        target: &Resolved,
+        span: Span,
+        scope: &Rc<Scope<'s>>,
+    ) -> Option<Const> {
+        let fields = self.program.structure(id).fields.clone();
+        if given.len() > fields.len() {
+            let found = self.program.type_name(target.ty);
+            self.report(
+                Diagnostic::new(Code::E0206, span, "there are more initial values than members").label(format!(
+                    "{} values for the {} members of {found}",
+                    given.len(),
+                    fields.len()
+                )),
+            );
+            return None;
+        }
+        let mut values = parts(&target.initial, fields.len());
+        for (at, initial) in given.iter().enumerate() {
+            let resolved = Resolved { ty: fields[at].ty, initial: values[at].clone() };
             values[at] = self.initial(initial, &resolved, scope)?;
         }
         Some(collapse(values))

@@ -165,6 +165,13 @@ impl<'s> Needs<'_, 's> {
                 }
             }
             InitialKind::Fields(fields) => fields.iter().for_each(|(_, it)| self.initial(it)),
+            InitialKind::Indexed(elements) => {
+                for (indices, value) in elements {
+                    indices.iter().for_each(|it| self.expr(it));
+                    self.initial(value);
+                }
+            }
+            InitialKind::Members(values) => values.iter().for_each(|it| self.initial(it)),
         }
     }
 

@@ -89,6 +89,7 @@ const ATTRIBUTES: &[&str] = &[
     "qualified_only",
     "reflection",
     "signature_flag",
+    "startup",
     "strict",
     "subsequent",
     "suppress_warning",

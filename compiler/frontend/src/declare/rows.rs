@@ -81,6 +81,10 @@ impl<'s> Declarations<'s> {
 fn rows_of<'a, 's>(value: &'a Initial<'s>) -> Option<&'a [Element<'s>]> {
     match &value.kind {
         InitialKind::Elements(row) => Some(row),
-        InitialKind::Value(_) | InitialKind::Fields(_) | InitialKind::Bind(_) => None,
+        InitialKind::Value(_)
+        | InitialKind::Fields(_)
+        | InitialKind::Bind(_)
+        | InitialKind::Indexed(_)
+        | InitialKind::Members(_) => None,
     }
 }

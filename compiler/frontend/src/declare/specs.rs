@@ -213,7 +213,8 @@ impl<'s> Declarations<'s> {
             // A refused value has been reported; the type is known anyway.
             let is_flat = self.has_flat_rows(&decl.ty, initial);
             let value = if is_flat { None } else { self.initial(initial, &resolved, scope) };
-            let is_left_out = self.leaves_out(initial, resolved.ty, within);
+            let is_written = !decl.names.first().is_some_and(|it| crate::added::is_added(it.text));
+            let is_left_out = is_written && self.leaves_out(initial, resolved.ty, within);
             if is_left_out && (value.is_some() || is_flat) {
                 self.report_left_out(decl, initial);
             } else if !is_left_out {

@@ -138,7 +138,7 @@ impl<'s> Checker<'_, 's> {
         callee: &ast::Expr<'s>,
         arguments: &[ast::Argument<'s>],
     ) {
-        let own = self.own_of_suite(callee);
+        let own = self.own_of_suite(callee).or_else(|| self.called_as_instruction(callee));
         let callee = own.as_ref().unwrap_or(callee);
         if self.known_statement(callee, arguments, expr.span) {
             return;
@@ -172,6 +172,20 @@ impl<'s> Checker<'_, 's> {
         let is_library = matches!(&owner.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case(LIBRARY));
         let is_own = is_library && self.is_suite() && self.own_routine(*name).is_some();
         is_own.then_some(ast::Expr { kind: Ast::Name(*name), span: callee.span })
+    }
+
+    /// `valve.delay.TON(…)` of a TON: SCL names the instruction after its data.
+    fn called_as_instruction(&self, callee: &ast::Expr<'s>) -> Option<ast::Expr<'s>> {
+        let Ast::Member(instance, name) = &callee.kind else { return None };
+        let Some(Type::Block(id)) =
+            self.static_type(instance).filter(|_| self.decl.dialect(name.span).names_instructions())
+        else {
+            return None;
+        };
+        let info = id.info();
+        let is_counter = |of: &str| info.name.strip_prefix(of).is_some_and(|it| it.starts_with('_'));
+        let is_it = info.is_named(name.text) || is_counter(&name.text.to_ascii_uppercase());
+        (is_it && info.pin(name.text).is_none()).then(|| (**instance).clone())
     }
 
     /// A call with EN or ENO.

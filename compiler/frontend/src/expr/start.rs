@@ -446,7 +446,9 @@ impl<'s> Checker<'_, 's> {
                 Some(value) => value,
                 None => self.value(value, ty),
             },
-            InitialKind::Elements(_) | InitialKind::Fields(_) => None,
+            InitialKind::Elements(_) | InitialKind::Fields(_) | InitialKind::Indexed(_) | InitialKind::Members(_) => {
+                None
+            }
         };
         if let Some(value) = value {
             self.assign(member, value, address.span);

@@ -9,6 +9,7 @@ use crate::dialect::rules::ProgramOrder;
 use crate::expr::constant::constant;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
+use crate::start_up::is_start_up;
 use crate::types::address::is_input;
 use crate::types::declarations::Declarations;
 use crate::{Code, Diagnostic, Span};
@@ -43,6 +44,7 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     }
     declarations.program.is_configured = !declarations.program.instances.is_empty();
     if declarations.program.is_configured {
+        declarations.start_ups_first();
         return mark_listed(&mut declarations.program.instances, &declarations.program.classes);
     }
     let is_program = |at: &usize| declarations.pous[*at].ast.kind == ast::PouKind::Program;
@@ -51,7 +53,10 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
     let is_alone = |at: &usize| {
         is_program(at) && !declarations.is_of_library(*at) && (!declarations.is_named_program(*at) || is_shared(*at))
     };
-    let programs: Vec<_> = (0..declarations.written_pous().len()).filter(is_alone).collect();
+    let mut programs: Vec<_> = (0..declarations.written_pous().len()).filter(is_alone).collect();
+    programs.sort_by_key(|at| !is_start_up(declarations.pous[*at].ast));
+    // What says that a PROGRAM runs at the start says that all run.
+    declarations.program.is_configured = programs.iter().any(|at| is_start_up(declarations.pous[*at].ast));
     for at in programs {
         if declarations.report_not_connected(at) {
             continue;
@@ -65,6 +70,9 @@ pub(super) fn instances<'s>(declarations: &mut Declarations<'s>, files: &'s [ast
             interval: None,
             priority: LOWEST_PRIORITY,
         });
+    }
+    if declarations.program.is_configured {
+        mark_listed(&mut declarations.program.instances, &declarations.program.classes);
     }
 }
 
@@ -106,6 +114,22 @@ pub(super) struct Timing {
 }
 
 impl<'s> Declarations<'s> {
+    /// Adds the PROGRAMs that run once after each start, which no CONFIGURATION lists, before those that it does.
+    fn start_ups_first(&mut self) {
+        let is_listed = |this: &Self, at: usize| {
+            let class = this.class_of_slot(at);
+            this.program.instances.iter().any(|it| Some(it.program) == class)
+        };
+        let found = (0..self.written_pous().len()).filter(|at| is_start_up(self.pous[*at].ast));
+        let found: Vec<_> = found.filter(|at| !self.is_of_library(*at) && !is_listed(self, *at)).collect();
+        for (at, slot) in found.into_iter().enumerate() {
+            let Some(program) = self.class_of_slot(slot) else { continue };
+            let name = self.pous[slot].ast.name.text.to_owned();
+            let start_up = Instance { name, program, task: None, interval: None, priority: 0 };
+            self.program.instances.insert(at, start_up);
+        }
+    }
+
     /// One instance of each TEST, and nothing else.
     fn test_instances(&mut self) {
         let is_test = |at: &usize| self.pous[*at].ast.kind == ast::PouKind::Test;
@@ -128,7 +152,10 @@ impl<'s> Declarations<'s> {
             let source = self.log.sources.get(it.span.file);
             source.is_assembled() && it.resources.iter().all(|it| it.name.is_none())
         };
-        let alone: Vec<_> = configurations.iter().filter(|it| !is_of_task(it)).collect();
+        // Those that only declare global variables add to the one that runs PROGRAMs.
+        let runs = |it: &ast::Resource<'_>| it.name.is_some() || !it.tasks.is_empty() || !it.programs.is_empty();
+        let alone = configurations.iter().filter(|it| !is_of_task(it) && it.resources.iter().any(runs));
+        let alone: Vec<_> = alone.collect();
         let tasks = configurations.iter().find(is_of_task).filter(|_| !alone.is_empty());
         if let [first, second, ..] = alone.into_iter().chain(tasks).collect::<Vec<_>>().as_slice() {
             self.report(

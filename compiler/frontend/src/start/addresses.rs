@@ -141,7 +141,9 @@ pub(super) fn of_members<'s>(ty: &mut TypeSpec<'s>, types: &Types<'s>) -> Option
             InitialKind::Value(value) => {
                 is_address(value) || Expected::variable(&member.ty, types, None).by(value).is_some()
             }
-            InitialKind::Elements(_) | InitialKind::Fields(_) => false,
+            InitialKind::Elements(_) | InitialKind::Fields(_) | InitialKind::Indexed(_) | InitialKind::Members(_) => {
+                false
+            }
         };
         if member.initial.as_ref().is_some_and(is_own) {
             member.started = member.initial.take();
@@ -218,6 +220,8 @@ fn holds_address<'s>(initial: &Initial<'s>, expected: Expected<'_, 's>) -> bool 
             let Some((_, element)) = expected.elements() else { return false };
             elements.iter().flat_map(|it| &it.values).any(|it| holds_address(it, element))
         }
+        // The dialect that has these has no addresses as values.
+        InitialKind::Indexed(_) | InitialKind::Members(_) => false,
         InitialKind::Fields(fields) => {
             fields.iter().any(|(name, it)| expected.is_property(*name) || holds_address(it, expected.member(*name)))
         }
@@ -266,6 +270,7 @@ fn rest<'s>(
             }
             _ => InitialKind::Elements(elements),
         },
+        kind @ (InitialKind::Indexed(_) | InitialKind::Members(_)) => kind,
     };
     match &kind {
         InitialKind::Fields(fields) if fields.is_empty() => None,

@@ -189,6 +189,8 @@ impl<'s> Computed<'s> {
                 let values = elements.iter().flat_map(|it: &Element<'_>| &it.values);
                 values.filter_map(|it| self.when_of(it, pou)).max()
             }
+            InitialKind::Indexed(elements) => elements.iter().filter_map(|(_, it)| self.when_of(it, pou)).max(),
+            InitialKind::Members(values) => values.iter().filter_map(|it| self.when_of(it, pou)).max(),
             InitialKind::Fields(fields) => {
                 fields.iter().filter_map(|(_, it)| self.when_of(it, pou)).max().map(|_| When::After)
             }

@@ -142,6 +142,14 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
             .label(format!("`{part}` is not a number"))
             .help("expected numbers with points between them after the size: `%IX0.0`, `%IW1.2.3`");
     }
+    let is_bit =
+        name.text.get(2..3).is_some_and(|it| it.eq_ignore_ascii_case("X") || it.bytes().all(|it| it.is_ascii_digit()));
+    let last = name.text.rsplit('.').next().and_then(|it| it.parse::<u32>().ok());
+    if is_bit && numbers > 2 && last.is_some_and(|it| it > 7) {
+        return Diagnostic::new(Code::E0409, name.span, format!("`{}` is beyond its byte", name.text))
+            .label("the last number is a bit, 0 to 7, also after levels")
+            .help("Beremiz numbers the points of a device there: write them by bytes and bits, `%QX0.0.1.7`, then `%QX0.0.2.0`");
+    }
     if let (Some(meant), true) = (beyond(name.text), numbers == 2) {
         return Diagnostic::new(Code::E0409, name.span, format!("`{}` is beyond its byte", name.text))
             .label("the bits of a byte are 0 to 7")

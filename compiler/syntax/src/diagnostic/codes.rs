@@ -198,6 +198,7 @@ codes! {
     W0528 Warning "a diagram that other versions execute in another order";
     W0529 Warning "the system does it otherwise";
     W0530 Warning "an assignment as a condition";
+    W0531 Warning "a unit that ends with its file";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";

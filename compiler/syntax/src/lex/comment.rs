@@ -23,6 +23,14 @@ pub fn nested(rest: &str) -> usize {
     bytes.len()
 }
 
+/// A line that OpenPLC's editor adds for its debugger, `(*DBG:… (void *) …*)`, which the runtime drops before it compiles.
+pub fn debugger(text: &str) -> Option<usize> {
+    let line = text.lines().next()?.trim_end();
+    (line.starts_with(DEBUGGER) && line.ends_with("*)")).then_some(line.len())
+}
+
+const DEBUGGER: &str = "(*DBG:";
+
 /// `/* … */`
 pub fn plain(rest: &str) -> usize {
     until(rest, "*/")
@@ -41,7 +49,7 @@ fn until(rest: &str, end: &str) -> usize {
 pub fn is_closed(text: &str) -> bool {
     match text.as_bytes() {
         [b'/', b'/', ..] => true,
-        [b'(', b'*', rest @ ..] => rest.ends_with(b"*)") && balanced(text),
+        [b'(', b'*', rest @ ..] => rest.ends_with(b"*)") && (text.starts_with(DEBUGGER) || balanced(text)),
         [b'/', b'*', rest @ ..] => rest.ends_with(b"*/"),
         _ => text.ends_with('}'),
     }

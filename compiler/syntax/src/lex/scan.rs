@@ -42,7 +42,9 @@ impl<'s> Scanner<'s> {
             b'0'..=b'9' => number(bytes),
             b'\'' | b'"' => text(rest),
             b'%' => percent(bytes),
-            b'(' if bytes.get(1) == Some(&b'*') => (Kind::Comment, 2 + comment::nested(&rest[2..])),
+            b'(' if bytes.get(1) == Some(&b'*') => {
+                (Kind::Comment, comment::debugger(rest).unwrap_or_else(|| 2 + comment::nested(&rest[2..])))
+            }
             b'/' if bytes.get(1) == Some(&b'*') => (Kind::Comment, 2 + comment::plain(&rest[2..])),
             b'/' if bytes.get(1) == Some(&b'/') => (Kind::Comment, rest.find('\n').unwrap_or(rest.len())),
             b'{' => (Kind::Pragma, 1 + comment::pragma(&rest[1..])),

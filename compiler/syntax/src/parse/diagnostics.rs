@@ -2,7 +2,7 @@
 
 use crate::{
     ast::PouKind,
-    diagnostic::{Code, Diagnostic, wording::article},
+    diagnostic::{Code, Diagnostic, Severity, wording::article},
     lex::{Kind, index},
     source::Span,
 };
@@ -304,7 +304,13 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
         let inner_opener = input.text(inner).to_ascii_uppercase();
         it = it.other(inner, format!("or this {inner_opener} is not: the end after it is in another column"));
     }
-    input.report(it.help(help));
+    let it = it.help(help);
+    let has_errors = input.state().diagnostics.iter().any(|it| it.severity == Severity::Error);
+    let is_only_one = opened == input.state().first() && !has_errors;
+    match kind == Kind::End && is_only_one && outer.is_empty() {
+        true => input.state().unclosed.push(it),
+        false => input.report(it),
+    }
 }
 
 /// `WHILE … END_IF`

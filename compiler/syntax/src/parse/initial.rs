@@ -3,7 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Element, Expr, ExprKind, Initial, InitialKind},
+    ast::{Element, Expr, ExprKind, Initial, InitialKind, Name},
     lex::Kind,
     source::Span,
 };
@@ -58,8 +58,17 @@ fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
     let elements = delimited(Kind::OpenBracket, list_before(Kind::CloseBracket, element()), Kind::CloseBracket);
     let bound = ahead(|input| binds(input, 0)).ignore_then(binding());
     let given = token(Kind::Assign).ignore_then(initial());
-    let field = name().then(bound.or(given));
-    let fields = delimited(Kind::OpenParen, list(field), Kind::CloseParen);
+    let indices =
+        delimited(Kind::OpenBracket, list(expr()), Kind::CloseBracket).repeated().at_least(1).collect::<Vec<_>>();
+    let element = indices.then_ignore(token(Kind::Assign)).then(initial()).map_with(|(indices, value), extra| {
+        let tokens = extra.span();
+        let kind = InitialKind::Indexed(vec![(indices.into_iter().flatten().collect(), value)]);
+        Initial { kind, span: extra.state().span(tokens) }
+    });
+    let element = ahead(|input| input.kind() == Kind::OpenBracket).ignore_then(element);
+    let field = name().then(bound.or(given).or(element));
+    let fields = delimited(Kind::OpenParen, list(field), Kind::CloseParen).map(join_elements);
+    let members = delimited(Kind::OpenParen, list(initial()), Kind::CloseParen);
     let unread = |span| Expr { kind: ExprKind::Error(Vec::new()), span };
     let kind = choice((
         elements.map(InitialKind::Elements),
@@ -68,8 +77,11 @@ fn read_initial<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Initial<'s>> {
             .ignore_then(token(Kind::CloseParen))
             .map(|_| InitialKind::Fields(Vec::new())),
         ahead(opens_fields).ignore_then(fields).map(InitialKind::Fields),
+        ahead(opens_members).ignore_then(members).map(InitialKind::Members),
         foreign_types::brace_list("[", "]").map(unread).map(InitialKind::Value),
-        ahead(|input| !opens_fields(input) && !is_empty(input)).ignore_then(expr()).map(InitialKind::Value),
+        ahead(|input| !opens_fields(input) && !opens_members(input) && !is_empty(input))
+            .ignore_then(expr())
+            .map(InitialKind::Value),
     ));
     input.parse(nested(kind).map_with(|kind, extra| {
         let tokens = extra.span();
@@ -83,8 +95,76 @@ fn is_empty(input: &mut In<'_, '_, '_>) -> bool {
 }
 
 fn opens_fields(input: &mut In<'_, '_, '_>) -> bool {
-    let is_given = |input: &mut In<'_, '_, '_>| input.kind_ahead(2) == Kind::Assign || binds(input, 2);
+    let is_given = |input: &mut In<'_, '_, '_>| {
+        let at = after_indices(input, 2);
+        input.kind_ahead(at) == Kind::Assign || at == 2 && binds(input, 2)
+    };
     input.kind() == Kind::OpenParen && input.kind_ahead(1) == Kind::Name && is_given(input)
+}
+
+/// What follows indices, `[1][2, 3]`.
+fn after_indices(input: &mut In<'_, '_, '_>, from: usize) -> usize {
+    let mut at = from;
+    while input.kind_ahead(at) == Kind::OpenBracket {
+        let Some(close) = closing(input, at) else { return from };
+        at = close + 1;
+    }
+    at
+}
+
+/// Where the bracket or parenthesis is closed that is opened `ahead`, in the same statement.
+fn closing(input: &mut In<'_, '_, '_>, ahead: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    for at in ahead.. {
+        match input.kind_ahead(at) {
+            Kind::OpenBracket | Kind::OpenParen => depth += 1,
+            Kind::CloseBracket | Kind::CloseParen => depth = depth.checked_sub(1)?,
+            Kind::End | Kind::Semicolon => return None,
+            _ => {}
+        }
+        if depth == 0 {
+            return Some(at);
+        }
+    }
+    None
+}
+
+/// Whether values in parentheses are a list: an expression has no comma there, and does not begin with a bracket.
+fn opens_members(input: &mut In<'_, '_, '_>) -> bool {
+    if input.kind() != Kind::OpenParen {
+        return false;
+    }
+    let Some(close) = closing(input, 0) else { return false };
+    let mut depth = 0_usize;
+    for at in 1..close {
+        match input.kind_ahead(at) {
+            Kind::OpenBracket if at == 1 => return true,
+            Kind::OpenBracket | Kind::OpenParen => depth += 1,
+            Kind::CloseBracket | Kind::CloseParen => depth = depth.saturating_sub(1),
+            Kind::Comma if depth == 0 => return true,
+            _ => {}
+        }
+    }
+    false
+}
+
+/// Puts the elements of a member together.
+fn join_elements<'s>(given: Vec<(Name<'s>, Initial<'s>)>) -> Vec<(Name<'s>, Initial<'s>)> {
+    let mut fields: Vec<(Name<'s>, Initial<'s>)> = Vec::with_capacity(given.len());
+    for (name, initial) in given {
+        let is_same = |it: &&mut (Name<'s>, Initial<'s>)| {
+            it.0.text.eq_ignore_ascii_case(name.text) && matches!(it.1.kind, InitialKind::Indexed(_))
+        };
+        let InitialKind::Indexed(more) = initial.kind else {
+            fields.push((name, initial));
+            continue;
+        };
+        match fields.iter_mut().rev().find(is_same).map(|it| &mut it.1.kind) {
+            Some(InitialKind::Indexed(elements)) => elements.extend(more),
+            _ => fields.push((name, Initial { kind: InitialKind::Indexed(more), span: initial.span })),
+        }
+    }
+    fields
 }
 
 fn is_repeat(input: &mut In<'_, '_, '_>) -> bool {

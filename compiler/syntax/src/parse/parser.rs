@@ -132,6 +132,8 @@ pub struct State<'t, 's> {
     pub nested: Vec<Item<'s>>,
     /// Of VAR_CONFIG outside of a CONFIGURATION.
     pub bindings: Vec<Binding<'s>>,
+    /// What is reported of a unit that the end of the file ends, if it is alone there.
+    pub unclosed: Vec<Diagnostic>,
     /// What is reported of `a += b`, if the dialect does not have it.
     pub combined: Vec<Diagnostic>,
     /// The address in `x : BOOL AT %QX0.0`, and what is reported if the dialect does not have it.
@@ -170,6 +172,7 @@ impl<'t, 's> State<'t, 's> {
             orphaned: false,
             nested: Vec::new(),
             bindings: Vec::new(),
+            unclosed: Vec::new(),
             combined: Vec::new(),
             late_addresses: Vec::new(),
             nonretentive: Vec::new(),
@@ -189,6 +192,11 @@ impl<'t, 's> Inspector<'t, &'t [Kind]> for State<'t, 's> {
 }
 
 impl<'s> State<'_, 's> {
+    /// The first token.
+    pub fn first(&self) -> Span {
+        self.place(0)
+    }
+
     pub fn place(&self, at: usize) -> Span {
         let (start, end) = self.tokens.places[at.min(self.tokens.places.len() - 1)];
         Span { file: self.file, start, end }

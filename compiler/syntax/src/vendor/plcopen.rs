@@ -78,6 +78,7 @@ fn project<'t>(
             }
             "task" => tasks::task(file, reader, &element, tasks)?,
             "pouInstance" => {
+                tasks::open(tasks, &element.place);
                 tasks::instance(file, &element, None, tasks);
                 reader.skip()?;
             }

@@ -4,7 +4,8 @@
 mod counter;
 mod counter_use;
 mod data_block;
-mod token;
+mod organization;
+pub(super) mod token;
 mod words;
 
 use super::assembly::{Assembly, Chunk, Trouble};
@@ -79,6 +80,16 @@ pub fn read(file: &str) -> Assembly {
     }
     reader.copy_to(file.len());
     reader.out
+}
+
+/// What starts an organization block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Event {
+    /// It runs in each cycle, as OB 1.
+    Cycle,
+    /// It runs before the first cycle, as OB 100.
+    StartUp,
+    Unknown,
 }
 
 struct Scl<'t> {
@@ -168,14 +179,19 @@ impl<'t> Scl<'t> {
             return self.data_block();
         }
         let head = self.place(self.at);
-        self.replace(head, block.1);
         let (name, place) = (self.global_name(self.at + 1), self.place(self.at + 1));
-        if block.0 == "ORGANIZATION_BLOCK" && !["main", "ob1"].contains(&name.to_ascii_lowercase().as_str()) {
+        let event = (block.0 == "ORGANIZATION_BLOCK").then(|| self.event(&name));
+        if event == Some(Event::StartUp) {
+            self.copy_to(head.start);
+            self.out.write("{attribute 'startup'}\n", &head);
+        }
+        self.replace(head, block.1);
+        if event == Some(Event::Unknown) {
             let message = format!("the source does not say which event starts `{name}`");
             self.refuse(place.start..place.start, message);
             self.out.help(
-                "write start-up code in `Main`, guarded by a member of a data block, `IF NOT \"Start\".done THEN … END_IF;`; write code that runs \
-                 at intervals as a PROGRAM that a TASK of a CONFIGURATION runs",
+                "write code that runs at intervals as a PROGRAM that a TASK of a CONFIGURATION runs; code of an event as a FUNCTION_BLOCK that \
+                 `Main` calls where it happens",
             );
         }
         self.replace(place.clone(), &name);
@@ -436,10 +452,9 @@ impl<'t> Scl<'t> {
                     self.out.problem(Trouble::SecondEnd, "no REGION is open here".to_owned(), &place);
                     self.out.help("delete it, or write `REGION` where the region begins");
                 }
-                let has_end = self.text(self.at) == ";";
-                let end = if has_end { self.place(self.at).end } else { place.end };
-                self.at += usize::from(has_end);
-                self.replace(place.start..end, "");
+                let end = self.end_of_region(at);
+                self.at = end + 1;
+                self.replace(place.start..self.place(end).end, "");
             }
             "BEGIN" => {
                 self.is_body = true;
@@ -460,6 +475,22 @@ impl<'t> Scl<'t> {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// The last token of an END_REGION: its line may name the region again. A statement after it is one.
+    fn end_of_region(&self, at: usize) -> usize {
+        let place = self.place(at);
+        let line = self.file[place.end..].find('\n').map_or(self.file.len(), |it| place.end + it);
+        let is_on_line = |it: &usize| self.token(*it).is_some_and(|it| it.place.start < line);
+        let last = (at + 1..).take_while(is_on_line).last().unwrap_or(at);
+        let is_statement = self.text(at + 1) != ";" && (at + 1..=last).any(|it| self.text(it) == ";");
+        if self.text(at + 1) == ";" {
+            at + 1
+        } else if is_statement {
+            at
+        } else {
+            last
         }
     }
 

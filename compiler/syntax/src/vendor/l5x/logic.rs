@@ -3,7 +3,7 @@
 //! its tag: `valve_1(EnableIn := TRUE, Open := open, Closed => closed)`.
 
 use super::super::assembly::{Assembly, Chunk, Mark, Says, Trouble};
-use super::names::{Names, Operand, Scope, key, legal, plain};
+use super::names::{Names, Operand, Scope, is_of_statements, key, legal, plain};
 use super::service::controller_service;
 use core::ops::Range;
 use rustc_hash::FxHashMap;
@@ -256,7 +256,12 @@ impl<'a> Writer<'a, '_> {
             return (name.len(), Piece::Itself);
         }
         let is_tag = |it: &Scope| it.tags.contains(&key(name));
-        let own = || legal(name).filter(|_| is_tag(scope) || is_tag(&self.logic.names.controller));
+        // Where it may be an operator, it is one.
+        let own = || {
+            legal(name)
+                .filter(|_| !is_of_statements(name))
+                .filter(|_| is_tag(scope) || is_tag(&self.logic.names.controller))
+        };
         let piece = self.logic.names.meaning(name, scope).or_else(own).map_or(Piece::Itself, Piece::Words);
         (name.len(), piece)
     }

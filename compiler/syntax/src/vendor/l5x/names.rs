@@ -110,10 +110,46 @@ const WORDS: [&str; 39] = [
     "VAR_TEMP",
 ];
 
+/// Words of expressions and statements, which are names of members, and of tags that no Structured Text uses.
+const STATEMENT_WORDS: [&str; 27] = [
+    "AND",
+    "BY",
+    "CASE",
+    "CONTINUE",
+    "DO",
+    "ELSE",
+    "ELSIF",
+    "END_CASE",
+    "END_FOR",
+    "END_IF",
+    "END_REPEAT",
+    "END_WHILE",
+    "EXIT",
+    "FALSE",
+    "FOR",
+    "IF",
+    "MOD",
+    "NOT",
+    "OF",
+    "OR",
+    "REPEAT",
+    "RETURN",
+    "THEN",
+    "TRUE",
+    "UNTIL",
+    "WHILE",
+    "XOR",
+];
+
+/// Whether a word means something in expressions and statements.
+pub fn is_of_statements(name: &str) -> bool {
+    STATEMENT_WORDS.iter().any(|it| it.eq_ignore_ascii_case(name))
+}
+
 /// What a tag or member is called whose name means something else in Structured Text. Logix has no names that end so.
 pub fn legal(name: &str) -> Option<String> {
     let is_word = WORDS.iter().any(|it| it.eq_ignore_ascii_case(name));
-    (is_word || Elementary::named(name).is_some()).then(|| format!("{name}_"))
+    (is_word || is_of_statements(name) || Elementary::named(name).is_some()).then(|| format!("{name}_"))
 }
 
 /// Whether a text is a tag or a part of one: `Line.Speeds[1].3`, `Local:1:I.Data.0`, `\\Filling.Level`.

@@ -17,30 +17,56 @@ pub fn task<'t>(
     out.push(Chunk::words("TASK ", place));
     out.extend(name.clone());
     out.push(Chunk::words("(", place));
-    if let Some(interval) = element.attribute(file, "interval") {
-        out.push(Chunk::words(format!("INTERVAL := {}, ", duration(interval)), place));
-    }
-    let priority = element.attribute(file, "priority").unwrap_or("0");
-    out.push(Chunk::words(format!("PRIORITY := {priority});\n"), place));
-    while let Some(part) = reader.part()? {
+    let written = element.attribute(file, "interval").map(|it| (duration(it), place.clone()));
+    let (mut added, mut instances, mut depth) = (None, Vec::new(), 1_usize);
+    while depth > 0 {
+        let Some(part) = reader.part()? else { break };
         match part {
             Part::Open(element) => {
                 if element.name == "pouInstance" {
-                    instance(file, &element, name.as_ref(), out);
+                    instance(file, &element, name.as_ref(), &mut instances);
+                    reader.skip()?;
+                    continue;
                 }
-                reader.skip()?;
+                added = added.or_else(|| Some((settings(file, &element)?, element.place.clone())));
+                depth += 1;
             }
             Part::Text(_) => {}
-            Part::Close => break,
+            Part::Close => depth -= 1,
         }
     }
+    if let Some((interval, place)) = written.filter(|it| !is_none(&it.0)).or(added) {
+        out.push(Chunk::words(format!("INTERVAL := {interval}, "), &place));
+    }
+    let priority = element.attribute(file, "priority").unwrap_or("0");
+    out.push(Chunk::words(format!("PRIORITY := {priority});\n"), place));
+    out.append(&mut instances);
     Ok(())
+}
+
+/// The interval that CODESYS and TwinCAT add to a task that runs in cycles, `Interval="10000" IntervalUnit="us"` or
+/// `Interval="t#20ms"`; TwinCAT leaves that of the standard at `PT0S`.
+fn settings(file: &str, element: &Element<'_>) -> Option<String> {
+    if element.name != "TaskSettings" || element.attribute(file, "KindOfTask") != Some("Cyclic") {
+        return None;
+    }
+    let interval = element.attribute(file, "Interval")?;
+    let unit = element.attribute(file, "IntervalUnit").unwrap_or("ms").replace('µ', "u");
+    let is_number = interval.bytes().all(|it| it.is_ascii_digit() || it == b'.') && !interval.is_empty();
+    let interval = if is_number { format!("T#{interval}{unit}") } else { interval.to_uppercase().replace('µ', "u") };
+    let is_time = ["T#", "LT#", "TIME#"].iter().any(|it| interval.starts_with(it));
+    (is_time && !is_none(&interval)).then_some(interval)
+}
+
+/// `T#0s`: no interval, as a task without one has it.
+fn is_none(interval: &str) -> bool {
+    let digits = interval.split_once('#').map_or(interval, |it| it.1);
+    digits.bytes().any(|it| it == b'0') && !digits.bytes().any(|it| matches!(it, b'1'..=b'9'))
 }
 
 /// A program that runs in a task, or in none.
 pub fn instance<'t>(file: &'t str, element: &Element<'t>, task: Option<&Chunk>, out: &mut Vec<Chunk>) {
     let place = &element.place;
-    open(out, place);
     out.push(Chunk::words("PROGRAM ", place));
     out.extend(element.attribute_text(file, "name"));
     if let Some(task) = task {
@@ -54,7 +80,7 @@ pub fn instance<'t>(file: &'t str, element: &Element<'t>, task: Option<&Chunk>, 
     out.push(Chunk::words(";\n", place));
 }
 
-fn open(out: &mut Vec<Chunk>, place: &Range<usize>) {
+pub fn open(out: &mut Vec<Chunk>, place: &Range<usize>) {
     if out.is_empty() {
         out.push(Chunk::words("CONFIGURATION Config\nRESOURCE Res ON PLC\n", place));
     }

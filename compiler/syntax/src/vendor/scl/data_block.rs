@@ -29,10 +29,17 @@ impl Scl<'_> {
         self.at += 2;
         let mut is_retained = self.attributes();
         let ty = if self.is(self.at, "VAR") || self.is(self.at, "STRUCT") {
-            self.out.write(&format!("TYPE {name}_data : STRUCT\n"), &place);
-            is_retained |= self.structure();
-            self.out.write("END_STRUCT; END_TYPE\n", &place);
-            format!("{name}_data")
+            // A structure is retained as a whole, an instance by its sections.
+            let (open, close) = match self.is_retained_in_part() && !is_retained {
+                true => ("FUNCTION_BLOCK {}\n", "END_FUNCTION_BLOCK\n"),
+                false => ("TYPE {} : STRUCT\n", "END_STRUCT; END_TYPE\n"),
+            };
+            let is_structure = close.starts_with("END_STRUCT");
+            let ty = format!("{name}_data");
+            self.out.write(&open.replace("{}", &ty), &place);
+            is_retained |= self.structure(is_structure) && is_structure;
+            self.out.write(close, &place);
+            ty
         } else {
             let ty = self.global_name(self.at);
             let is_word = self.token(self.at).is_some_and(|it| it.kind == Kind::Word);
@@ -69,9 +76,17 @@ impl Scl<'_> {
         }
     }
 
-    /// The members, in one structure or in sections; whether they are retained.
-    fn structure(&mut self) -> bool {
-        let (mut plain, mut retained) = (false, false);
+    /// Whether some of the sections are retained, and others are not.
+    fn is_retained_in_part(&self) -> bool {
+        let is_end = |it: &usize| self.is(*it, "BEGIN") || self.is(*it, "END_DATA_BLOCK");
+        let tokens = (self.at..self.tokens.len()).take_while(|it| !is_end(it));
+        let sections: Vec<_> = tokens.filter(|it| self.is(*it, "VAR")).map(|it| self.is(it + 1, "RETAIN")).collect();
+        sections.contains(&true) && sections.contains(&false)
+    }
+
+    /// The members, in one structure or in sections, which are left out if they become one; whether they are retained.
+    fn structure(&mut self, is_one: bool) -> bool {
+        let mut retained = false;
         while !self.is(self.at, "BEGIN") && !self.is(self.at, "END_DATA_BLOCK") && self.at < self.tokens.len() {
             let start = self.place(self.at);
             let is_section = self.is(self.at, "VAR");
@@ -81,8 +96,9 @@ impl Scl<'_> {
             let has_word = retains || self.is(self.at, "NON_RETAIN");
             let opened = if has_word { self.place(self.at).end } else { start.end };
             self.at += usize::from(has_word);
-            self.replace(start.start..opened, "");
-            (plain, retained) = (plain || !retains, retained || retains);
+            let section = if retains { "VAR_INPUT RETAIN\n" } else { "VAR_INPUT\n" };
+            self.replace(start.start..opened, if is_one { "" } else { section });
+            retained |= retains;
             let mut depth = 0_usize;
             while self.at < self.tokens.len() && !(depth == 0 && self.is(self.at, end)) {
                 depth += usize::from(self.is(self.at, "STRUCT"));
@@ -94,13 +110,8 @@ impl Scl<'_> {
             let has_sign = self.text(self.at) == ";";
             let end = if has_sign { self.place(self.at).end } else { close.end };
             self.at += usize::from(has_sign);
-            self.replace(close.start..end, "");
+            self.replace(close.start..end, if is_one { "" } else { "END_VAR\n" });
             self.notes();
-        }
-        if plain && retained {
-            let place = self.place(self.at);
-            self.refuse(place.start..place.start, "only a part of this data block is retained".to_owned());
-            self.out.help("write two data blocks: one whose sections are all `VAR RETAIN`, one for the others");
         }
         retained
     }
@@ -143,23 +154,51 @@ impl Scl<'_> {
         self.problem(Trouble::Odd, place, message);
     }
 
-    /// A value for a path of members; an element of an array has none alone.
+    /// A value for a path of members and elements.
     fn value(&mut self, values: &mut Values, path: Range<usize>, value: Range<usize>) {
         let place = self.place(path.start).start..self.place(path.end - 1).end;
-        let names: Vec<_> = path.clone().step_by(2).map(|at| (self.name(at), self.place(at))).collect();
-        let is_path = path.clone().skip(1).step_by(2).all(|at| self.text(at) == ".");
+        let names = self.path(path);
         let is_plain = value
             .clone()
             .all(|at| matches!(self.token(at).map(|it| it.kind), Some(Kind::Other | Kind::Word | Kind::Literal)));
-        if !is_path || !is_plain {
+        let Some(names) = names.filter(|_| is_plain) else {
             let text = &self.file[place.clone()];
             // What is before it is written with the variable.
             self.copied = place.start;
             return self
                 .refuse(place, format!("the initial value of `{text}` is not read: declare it with its variable"));
-        }
+        };
         let written = self.place(value.start).start..self.place(value.end - 1).end;
         values.set(names.into_iter(), written);
+    }
+
+    /// `Lines[2].Name`, as `Lines[2]` and `Name`; `None` for what is not a path.
+    fn path(&self, tokens: Range<usize>) -> Option<Vec<(String, Range<usize>)>> {
+        let mut names = Vec::new();
+        let mut at = tokens.start;
+        while at < tokens.end {
+            let start = self.place(at);
+            let is_name = matches!(self.token(at)?.kind, Kind::Word | Kind::Quoted | Kind::Local);
+            let mut name = is_name.then(|| self.name(at))?;
+            let mut end = start.end;
+            at += 1;
+            while at < tokens.end && self.text(at) == "[" {
+                let close = (at..tokens.end).find(|it| self.text(*it) == "]")?;
+                for token in at..=close {
+                    let is_named = matches!(self.token(token)?.kind, Kind::Quoted | Kind::Local);
+                    name.push_str(&if is_named { self.name(token) } else { self.text(token).to_owned() });
+                }
+                end = self.place(close).end;
+                at = close + 1;
+            }
+            names.push((name, start.start..end));
+            let is_last = at == tokens.end;
+            if !is_last && (self.text(at) != "." || at + 1 == tokens.end) {
+                return None;
+            }
+            at += 1;
+        }
+        Some(names)
     }
 }
 

@@ -79,7 +79,7 @@ impl<'f> Writer<'_, 'f> {
                 let Some(shape) = self.shapes.element(shape) else { return };
                 elements.iter().flat_map(|it| &it.values).for_each(|it| self.initial(shape, it));
             }
-            (InitialKind::Value(_) | InitialKind::Bind(_), _) => {}
+            (InitialKind::Value(_) | InitialKind::Bind(_) | InitialKind::Indexed(_) | InitialKind::Members(_), _) => {}
         }
     }
 

@@ -1,0 +1,139 @@
+//! Programs of B&R's Automation Studio. Each is a folder: `PROGRAM _INIT`, `_CYCLIC` and `_EXIT` are its parts, and its variables are in
+//! files `.var`. It becomes a PROGRAM with the name of the folder. A library declares its functions in `.fun`, and their bodies are elsewhere.
+
+use crate::Sources;
+use crate::added::STARTED_UP;
+use crate::ast::{File, Item, Pou, PouKind, Statement, VarBlock, VarKind};
+use crate::spelling::Key;
+use crate::start_up::once;
+use crate::testing::tree::variables;
+use rustc_hash::FxHashMap;
+
+const INIT: &str = "_INIT";
+const CYCLIC: &str = "_CYCLIC";
+const EXIT: &str = "_EXIT";
+
+/// Puts the parts of programs and functions together.
+pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) {
+    let paths: Vec<&'s str> = sources.files().iter().map(|it| it.path.as_str()).collect();
+    join_functions(files, &paths);
+    let folders: Vec<&'s str> = paths.iter().map(|it| folder_of(it)).collect();
+    let mut programs: FxHashMap<&'s str, usize> = FxHashMap::default();
+    for at in 0..files.len() {
+        let has_part = files[at].items.iter().any(|it| part_of(it).is_some());
+        let Some(folder) = folders.get(at).filter(|_| has_part) else { continue };
+        programs.entry(folder).or_insert(at);
+    }
+    for (folder, first) in programs {
+        let mut parts: Vec<Pou<'s>> = Vec::new();
+        let mut blocks: Vec<VarBlock<'s>> = Vec::new();
+        for at in (0..files.len()).filter(|at| folders.get(*at) == Some(&folder)) {
+            let is_list = has_extension(paths[at], "var");
+            for item in std::mem::take(&mut files[at].items) {
+                match item {
+                    Item::Globals(block) if is_list => blocks.push(VarBlock { kind: VarKind::Var, ..block }),
+                    item if part_of(&item).is_some() => {
+                        if let Item::Pou(pou) = item {
+                            parts.push(pou);
+                        }
+                    }
+                    item => files[at].items.push(item),
+                }
+            }
+        }
+        files[first].items.extend(program(folder, parts, blocks).map(Item::Pou));
+    }
+}
+
+fn folder_of(path: &str) -> &str {
+    path.rsplit_once(['/', '\\']).map_or("", |it| it.0)
+}
+
+fn has_extension(path: &str, wanted: &str) -> bool {
+    path.rsplit_once('.').is_some_and(|it| it.1.eq_ignore_ascii_case(wanted))
+}
+
+/// Which part of a program an item is.
+fn part_of(item: &Item<'_>) -> Option<&'static str> {
+    let Item::Pou(pou) = item else { return None };
+    let is_it = |it: &&str| pou.kind == PouKind::Program && pou.name.text.eq_ignore_ascii_case(it);
+    [INIT, CYCLIC, EXIT].into_iter().find(is_it)
+}
+
+/// The PROGRAM of a folder: what `_INIT` does runs once, before the first `_CYCLIC`. `_EXIT` runs where a program is taken off a
+/// controller: it is an ACTION here, which nothing calls.
+fn program<'s>(folder: &'s str, parts: Vec<Pou<'s>>, blocks: Vec<VarBlock<'s>>) -> Option<Pou<'s>> {
+    let mut parts: Vec<(bool, Pou<'s>)> = parts.into_iter().map(|it| (Key(it.name.text) == Key(CYCLIC), it)).collect();
+    parts.sort_by_key(|it| !it.0);
+    let (_, first) = parts.first()?;
+    let at = first.name.span;
+    let mut program = Pou::new(PouKind::Program, crate::ast::Name { text: name_of(folder), span: at }, first.span);
+    (program.extent, program.doc) = (first.extent, first.doc.clone());
+    program.blocks = blocks;
+    let (mut init, mut cyclic): (Vec<Statement<'s>>, Vec<Statement<'s>>) = (Vec::new(), Vec::new());
+    for (_, part) in parts {
+        program.blocks.extend(part.blocks);
+        program.routines.extend(part.routines);
+        match part.name.text {
+            it if Key(it) == Key(INIT) => init.extend(part.body),
+            it if Key(it) == Key(CYCLIC) => cyclic.extend(part.body),
+            _ => {
+                let action =
+                    Pou { body: part.body, extent: part.extent, ..Pou::new(PouKind::Action, part.name, part.span) };
+                program.routines.push(action);
+            }
+        }
+    }
+    if !init.is_empty() {
+        program.blocks.push(variables(&[(STARTED_UP, &["BOOL"])], at));
+        cyclic.insert(0, once(init, at));
+    }
+    program.body = cyclic;
+    Some(program)
+}
+
+/// The last part of a folder's path, where that can be a name.
+fn name_of(folder: &str) -> &str {
+    let name = folder.rsplit(['/', '\\']).next().unwrap_or_default();
+    let is_name = name.starts_with(|it: char| it.is_ascii_alphabetic() || it == '_')
+        && name.bytes().all(|it| it.is_ascii_alphanumeric() || it == b'_');
+    if is_name { name } else { "Main" }
+}
+
+/// Gives the bodies of functions and function blocks the declarations in files `.fun`.
+fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str]) {
+    let mut heads: FxHashMap<Key<'s>, Pou<'s>> = FxHashMap::default();
+    let is_list = |at: usize| paths.get(at).is_some_and(|it| has_extension(it, "fun"));
+    if !(0..files.len()).any(is_list) {
+        return;
+    }
+    let bodies: Vec<Key<'s>> = (0..files.len()).filter(|at| !is_list(*at)).flat_map(|at| names(&files[at])).collect();
+    for at in (0..files.len()).filter(|at| is_list(*at)) {
+        for item in std::mem::take(&mut files[at].items) {
+            match item {
+                Item::Pou(pou) if bodies.contains(&Key(pou.name.text)) => {
+                    heads.insert(Key(pou.name.text), pou);
+                }
+                // Its body is not among the sources.
+                Item::Pou(pou) => files[at].items.push(Item::Pou(Pou { is_stub: true, ..pou })),
+                item => files[at].items.push(item),
+            }
+        }
+    }
+    for item in files.iter_mut().flat_map(|it| &mut it.items) {
+        let Item::Pou(pou) = item else { continue };
+        if let Some(head) = heads.remove(&Key(pou.name.text)) {
+            pou.blocks.splice(0..0, head.blocks);
+            pou.result = pou.result.take().or(head.result);
+            pou.doc = pou.doc.take().or(head.doc);
+        }
+    }
+}
+
+fn names<'s>(file: &File<'s>) -> Vec<Key<'s>> {
+    let pous = file.items.iter().filter_map(|it| match it {
+        Item::Pou(pou) => Some(Key(pou.name.text)),
+        Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+    });
+    pous.collect()
+}
