@@ -1,7 +1,7 @@
 //! The library that is written in Structured Text is a part of the programs that name it, and of no others.
 
 use staunch_frontend::{
-    Compilation, Declares, Diagnostic, Dialect, LIBRARY, Options, Severity, Source, Sources, compile,
+    Compilation, Declares, Diagnostic, Dialect, Options, Severity, Source, Sources, compile, library,
 };
 
 fn compiled(text: &str, dialect: Dialect) -> Compilation {
@@ -14,7 +14,7 @@ fn compiled(text: &str, dialect: Dialect) -> Compilation {
 #[test]
 fn every_unit_compiles() {
     let page = include_str!("../../../docs/library.md");
-    for unit in LIBRARY {
+    for unit in library() {
         let name = unit.name;
         let dialect = unit.dialects.first().copied().unwrap_or_default();
         let call = match unit.declares {
@@ -35,7 +35,9 @@ fn every_unit_compiles() {
         let is_wrong = |it: &&Diagnostic| it.span.file > 0 || is_missing(&it.message) && !is_qualified(&it.help);
         let wrong: Vec<_> = wrong.filter(is_wrong).collect();
         assert!(wrong.is_empty(), "{name}: {wrong:?}");
-        assert!(page.contains(&format!("`{name}`")), "{name} is not on the page");
+        // The page has a library's constants and enumerators as a whole.
+        let is_listed = !unit.is_declaration || !unit.is_value() && !name.starts_with("__");
+        assert!(!is_listed || page.contains(&format!("`{name}`")), "{name} is not on the page");
     }
 }
 
