@@ -599,7 +599,7 @@ impl Extended {
     pub fn of(sources: &Sources, options: &Options) -> Option<Self> {
         let mut uses = Uses::default();
         for (source, number) in sources.files().iter().zip(0u16..) {
-            if mentions_any(&source.text) {
+            if mentions_any(&source.text, options.dialect) {
                 uses.read(number, source, sources.defined(source), options);
             }
         }
@@ -898,9 +898,14 @@ fn dialect_of(tokens: &Tokens<'_>, options: &Options) -> Dialect {
     own.unwrap_or(options.dialect)
 }
 
-/// Whether a text has a word that is a unit's name.
-fn mentions_any(text: &str) -> bool {
-    words(text).any(may_name)
+/// Whether a text has a word that is the name of a unit in its dialect: the one that is given, or what it says itself.
+fn mentions_any(text: &str, dialect: Dialect) -> bool {
+    let mut names_dialect = None;
+    words(text).filter(|it| may_name(it)).any(|it| {
+        // A vendor's declaration is of few dialects.
+        let is_elsewhere = units(it).next().is_some() && unit(it, dialect).is_none();
+        !is_elsewhere || *names_dialect.get_or_insert_with(|| text.contains("dialect"))
+    })
 }
 
 /// The words of a text that are as long as some unit's name with the same first and last letter.
