@@ -1,7 +1,7 @@
 //! A project that refers to libraries which are not available: they are named once, in place of each unknown name.
 
 use crate::dialect::library;
-use crate::{Code, Dialect, Diagnostic, Sources};
+use crate::{Code, Diagnostic, Dialect, Sources};
 
 /// How many of the unknown names are shown.
 const SHOWN: usize = 8;
@@ -39,14 +39,10 @@ fn named_once(first: &Diagnostic, absent: &[&str], names: &[&str]) -> Diagnostic
         more => format!(", and {more} more"),
     };
     let paths: Vec<_> = absent.iter().map(|it| format!("\"…/{it}.plcproj\"")).collect();
-    Diagnostic::new(
-        Code::E0102,
-        first.span,
-        format!("the project refers to {what} not available: {}", quoted(absent)),
-    )
-    .label("the first unknown name")
-    .note(format!("unknown: {shown}{more}"))
-    .help(format!("add {their} to staunch.toml: `libraries = [{}]`", paths.join(", ")))
+    Diagnostic::new(Code::E0102, first.span, format!("the project refers to {what} not available: {}", quoted(absent)))
+        .label("the first unknown name")
+        .note(format!("unknown: {shown}{more}"))
+        .help(format!("add {their} to staunch.toml: `libraries = [{}]`", paths.join(", ")))
 }
 
 /// The libraries of the references that are neither bundled nor among the sources.
@@ -65,7 +61,8 @@ fn absent_libraries(sources: &Sources) -> Vec<&str> {
 }
 
 /// What the names of those libraries begin with that programs name nothing of, or that are a part of the compiler.
-const NAMELESS: [&str; 7] = ["System_Visu", "Visu", "Breakpoint", "TcUnit", "IBaseLibrary", "Base Interfaces", "Tc3_Interfaces"];
+const NAMELESS: [&str; 7] =
+    ["System_Visu", "Visu", "Breakpoint", "TcUnit", "IBaseLibrary", "Base Interfaces", "Tc3_Interfaces"];
 
 fn is_unknown(it: &Diagnostic) -> bool {
     const STARTS: [&str; 5] = [

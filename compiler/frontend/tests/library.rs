@@ -56,7 +56,8 @@ fn expect_compiles(what: &str, text: &str, unit: &LibraryUnit) {
     let dialect = unit.dialects.first().copied().unwrap_or_default();
     let reported = compiled(text, dialect).diagnostics;
     // A FUNCTION lacks its arguments, and a list is not a value.
-    let is_missing = |it: &str| it.contains("is not declared") || it.contains("there is no ") || it.contains("the library's `");
+    let is_missing =
+        |it: &str| it.contains("is not declared") || it.contains("there is no ") || it.contains("the library's `");
     let wrong = reported.iter().filter(|it| it.severity == Severity::Error);
     // What is TcUnit's is named after it.
     let is_qualified = |it: &Option<String>| it.as_ref().is_some_and(|it| it.contains("USING TcUnit"));

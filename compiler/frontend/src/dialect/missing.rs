@@ -4,10 +4,8 @@ use super::Dialect;
 use super::library::is_one_of;
 
 /// Types and blocks, and the library that they are of.
-const TYPES: [(&str, &[&str]); 1] = [(
-    "Tc2_Utilities",
-    &["FB_MemRingBufferEx", "FB_FileRingBuffer", "RTC_EX", "FB_BasicPID"],
-)];
+const TYPES: [(&str, &[&str]); 1] =
+    [("Tc2_Utilities", &["FB_MemRingBufferEx", "FB_FileRingBuffer", "RTC_EX", "FB_BasicPID"])];
 
 /// What the blocks of PLCopen's motion control, `MC_Power`, are of.
 const MOTION: &str = "`Tc2_MC2` of TwinCAT, or `SM3_Basic` of CODESYS";

@@ -332,8 +332,8 @@ impl<'s> Names<'s> {
         let found = match prefix {
             None | Some(Prefix::Library)
                 if let [inner, rest @ ..] = between
-                && library::leads_to(site.dialect, first, inner.text)
-                && self.is_library(site, inner.text) =>
+                    && library::leads_to(site.dialect, first, inner.text)
+                    && self.is_library(site, inner.text) =>
             {
                 return self.qualified(site, inner.text, rest, last, sense);
             }
