@@ -12,10 +12,10 @@ const SYNTAX_LAYERS: [&str; 9] =
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 23] = [
+const LAYERS: [&str; 24] = [
     "added", "allow", "declared", "testing", "mutate", "start", "tasks", "dialect", "options", "log", "locate",
-    "chart", "enabled", "prelude", "names", "inherit", "types", "expr", "declare", "body", "library", "program",
-    "lints",
+    "absent", "chart", "enabled", "prelude", "names", "inherit", "types", "expr", "declare", "body", "library",
+    "program", "lints",
 ];
 
 const COMPARE: &str = "compiler/compare/src";
