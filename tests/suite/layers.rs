@@ -12,7 +12,7 @@ const SYNTAX_LAYERS: [&str; 9] =
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 27] = [
+const LAYERS: [&str; 28] = [
     "added",
     "allow",
     "declared",
@@ -28,6 +28,7 @@ const LAYERS: [&str; 27] = [
     "options",
     "log",
     "locate",
+    "absent",
     "chart",
     "enabled",
     "prelude",

@@ -289,7 +289,10 @@ impl Build {
         let libraries =
             project.libraries.iter().map(|it| project.folder.join(it)).chain(self.libraries.iter().cloned());
         let mut all: Vec<_> = own.iter().map(|it| (it.clone(), None)).collect();
-        for library in libraries {
+        let libraries: Vec<_> = libraries.collect();
+        let is_named = |it: &PathBuf| libraries.iter().any(|library| listing::name(library) == listing::name(it));
+        let siblings = self.paths.iter().flat_map(|it| listing::siblings(it)).filter(|it| !is_named(it));
+        for library in libraries.iter().cloned().chain(siblings) {
             let name = listing::name(&library);
             all.extend(files::find(&[library], cargo)?.into_iter().map(|it| (it, Some(name.clone()))));
         }

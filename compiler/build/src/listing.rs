@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 /// A solution names projects, these name PLC projects, and these sources.
 const DEEPEST: usize = 4;
+/// So many folders above a PLC project its solution may be.
+const HIGHEST: usize = 8;
 
 /// Whether a folder's file is a source by its name.
 pub fn is_source(path: &Path) -> bool {
@@ -86,6 +88,53 @@ pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
         return Err(format!("{} does not list a source file", project.display()));
     }
     Ok((sources, lists))
+}
+
+/// The PLC projects of the same solution to which one refers as libraries, by their names, and those to which these refer.
+pub fn siblings(project: &Path) -> Vec<PathBuf> {
+    let (mut found, mut waiting) = (Vec::new(), vec![project.to_owned()]);
+    let others = if has_extension(project, &["plcproj"]) { in_its_solution(project) } else { Vec::new() };
+    while let Some(it) = waiting.pop() {
+        for wanted in references(core::slice::from_ref(&it)) {
+            let is_it = |other: &&PathBuf| name(other).eq_ignore_ascii_case(&wanted.library) && !found.contains(*other);
+            if let Some(sibling) = others.iter().find(is_it) {
+                found.push(sibling.clone());
+                waiting.push(sibling.clone());
+            }
+        }
+    }
+    found
+}
+
+/// The other PLC projects of the nearest solution that lists a project.
+fn in_its_solution(project: &Path) -> Vec<PathBuf> {
+    let Ok(own) = project.canonicalize() else { return Vec::new() };
+    let is_own = |it: &PathBuf| it.canonicalize().is_ok_and(|it| it == own);
+    for folder in own.ancestors().skip(1).take(HIGHEST) {
+        let Ok(entries) = std::fs::read_dir(folder) else { return Vec::new() };
+        let mut solutions: Vec<_> = entries.filter_map(|it| Some(it.ok()?.path())).collect();
+        solutions.retain(|it| has_extension(it, &["sln"]));
+        solutions.sort();
+        for solution in solutions {
+            let mut projects = listed_by(&solution);
+            if projects.iter().any(is_own) {
+                projects.retain(|it| !is_own(it) && sources(it).is_ok());
+                return projects;
+            }
+        }
+    }
+    Vec::new()
+}
+
+/// The PLC projects that a solution leads to, without what cannot be read.
+fn listed_by(solution: &Path) -> Vec<PathBuf> {
+    let Ok(listed) = std::fs::read(solution).map_err(|it| it.to_string()).and_then(|it| Source::listed(&it)) else {
+        return Vec::new();
+    };
+    let folder = solution.parent().unwrap_or(Path::new(""));
+    let files = listed.iter().map(|it| resolved(folder, it)).filter(|it| is_list(it));
+    let projects = files.filter_map(|it| plc_projects(&it, 1, &mut Vec::new()).ok());
+    projects.flatten().map(|it| it.0).collect()
 }
 
 /// The libraries to which the PLC projects among lists refer.

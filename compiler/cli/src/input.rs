@@ -18,7 +18,7 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
     if all.is_empty() {
         return Err("no source file was found".to_owned());
     }
-    for library in libraries {
+    for library in libraries.iter().chain(&siblings(arguments, libraries)) {
         let name = listing::name(library);
         all.extend(found(core::slice::from_ref(library))?.into_iter().map(|it| (it, Some(name.clone()))));
     }
@@ -45,6 +45,13 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
         sources.name_project(listing::project_name(&lists));
     }
     Ok(sources)
+}
+
+/// The PLC projects that projects among the arguments refer to as libraries, where no library has their name.
+fn siblings(arguments: &[PathBuf], libraries: &[PathBuf]) -> Vec<PathBuf> {
+    let is_named = |it: &PathBuf| libraries.iter().any(|library| listing::name(library) == listing::name(it));
+    let all = arguments.iter().flat_map(|it| listing::siblings(it));
+    all.filter(|it| !is_named(it)).collect()
 }
 
 /// The files that the arguments name, each once, folders in sorted order.

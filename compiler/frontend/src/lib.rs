@@ -1,6 +1,7 @@
 //! Structured Text in, typed intermediate representation out.
 #![forbid(unsafe_code)]
 
+mod absent;
 mod added;
 mod chart;
 mod declared;
@@ -46,7 +47,7 @@ pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::{AskedAt, OPEN_OPTIONS, OpenOption, Options, Question, Stops};
 pub use parse::{parse, parse_file};
-pub use prelude::{Declares, UNITS as LIBRARY, Unit as LibraryUnit};
+pub use prelude::{Declares, Unit as LibraryUnit, every_unit as library};
 pub use source::{Source, Sources, Span};
 pub use spelling::nearest;
 pub use testing::{Assertion, Fixture, FixtureCase, Suite, Test};
@@ -507,7 +508,7 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
         diagnostics.extend(unassigned);
     }
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
-    let diagnostics = said_once(diagnostics, sources);
+    let diagnostics = said_once(absent::deduplicate_missing(diagnostics, sources), sources);
     if let (Some(span), false) = (left_out, rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }

@@ -5,7 +5,7 @@
 use crate::ast::{ExprKind, File, Item, Pou, PouKind, each_expr};
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
-use crate::{Code, Diagnostic, Severity, Sources, Span};
+use crate::{Code, Diagnostic, Severity, Sources, Span, prelude};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::{Location, Routine, RoutineId};
 
@@ -34,7 +34,7 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
                 None => stubs.refused.push(code),
             }
         }
-        if !source.is_of_library() {
+        if !source.is_of_library() && !source.only_declares() {
             continue;
         }
         file.items.retain(|it| match it {
@@ -141,7 +141,8 @@ impl Stubs {
         let sources = declarations.log.sources;
         let is_own = |slot: &usize| {
             let pou = declarations.pous[*slot].ast;
-            !sources.get(pou.span.file).is_of_library() && !self.names.contains(&pou.name.span)
+            let source = sources.get(pou.span.file);
+            !source.is_of_library() && !source.only_declares() && !self.names.contains(&pou.name.span)
         };
         let mut missing = called((0..routines.len()).filter(is_own).collect(), routines);
         missing.retain(|(slot, _)| {
@@ -151,7 +152,7 @@ impl Stubs {
         });
         // What several classes inherit is declared once.
         let mut said = FxHashSet::default();
-        missing.retain(|(slot, _)| said.insert(declarations.pous[*slot].ast.name.span));
+        missing.retain(|(slot, _)| said.insert(declarations.reported_as(*slot)));
         for (slot, at) in missing {
             match self.c_code.get(&declarations.pous[slot].ast.name.span) {
                 Some(code) => declarations.report_c_code(slot, at, *code),
@@ -172,8 +173,20 @@ impl Declarations<'_> {
         self.report(error);
     }
 
+    /// The place of the name that a missing body is reported by: a block of a bundled library is reported once, whichever of its
+    /// METHODs are called.
+    fn reported_as(&self, slot: usize) -> Span {
+        let span = self.pous[slot].ast.name.span;
+        let is_declared = self.log.sources.get(span.file).only_declares();
+        let owner = self.pous[slot].owner.filter(|_| is_declared);
+        owner.map_or(span, |it| self.pous[it].ast.name.span)
+    }
+
     fn report_without_body(&mut self, slot: usize, at: Location) {
         let pou = self.pous[slot].ast;
+        if self.log.sources.get(pou.name.span.file).only_declares() {
+            return self.report_needs_machine(slot, at);
+        }
         let (title, file) = (self.title(slot), &self.log.sources.get(pou.name.span.file).path);
         let error = Diagnostic::new(Code::E0318, self.log.name_at(at), format!("`{title}` has no implementation"))
             .label("called here")
@@ -187,6 +200,28 @@ impl Declarations<'_> {
                     "write its body in {file} (`RETURN;` to do nothing); it may call a FUNCTION that is `{{external}}`"
                 ),
             });
+        self.report(error);
+    }
+}
+
+impl Declarations<'_> {
+    /// That a vendor's block, or FUNCTION, does something on the vendor's machine alone.
+    fn report_needs_machine(&mut self, slot: usize, at: Location) {
+        let owner = self.pous[slot].owner.unwrap_or(slot);
+        let name = self.pous[owner].ast.name.text;
+        let name = name.strip_prefix(prelude::RENAMED).unwrap_or(name);
+        let unit = prelude::unit(name, self.dialect(self.pous[owner].ast.name.span));
+        let library = unit.and_then(|it| it.libraries.first().copied()).unwrap_or("the library");
+        let error = Diagnostic::new(
+            Code::E0318,
+            self.log.name_at(at),
+            format!("`{name}` of {library} has no implementation here"),
+        )
+        .label("called here")
+        .note("the library that is bundled with Staunch declares it: it needs the vendor's system")
+        .help(format!(
+            "declare your own `{name}` with a body: it is used in place of this one. `MOCK` replaces it in a test"
+        ));
         self.report(error);
     }
 }

@@ -1,17 +1,17 @@
 //! The library that is written in Structured Text: a unit becomes a source of the program where one of the program's
 //! files names it, and costs nothing where none does. What a user declares by the same name wins.
 
+mod index;
 mod tcunit;
+mod vendor;
 
 use crate::dialect::Dialect;
 use crate::dialect::library::{is_one_of, leads_to};
 use crate::lex::{Kind, Known, Tokens, lex_with};
 use crate::options::Options;
-use crate::spelling::Key;
 use crate::{Code, Diagnostic, Severity, Source, Sources, Span};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use staunch_runtime::Class;
-use std::sync::LazyLock;
 
 /// A unit of the library.
 #[derive(Clone, Copy, Debug)]
@@ -23,8 +23,18 @@ pub struct Unit {
     pub dialects: &'static [Dialect],
     /// The libraries of CODESYS and TwinCAT that have it, whose names may be before its own.
     pub libraries: &'static [&'static str],
-    /// Other units that it names.
-    needs: &'static [&'static str],
+    needs: Needs,
+    /// A vendor's declaration: what needs the machine has no body.
+    pub is_declaration: bool,
+}
+
+/// Other units that one names.
+#[derive(Clone, Copy, Debug)]
+enum Needs {
+    These(&'static [&'static str]),
+    This(&'static str),
+    /// Those that are named in its text.
+    Read,
 }
 
 impl Unit {
@@ -37,13 +47,36 @@ impl Unit {
     fn has_own_name(&self) -> bool {
         match self.declares {
             Declares::Function | Declares::Value => true,
-            Declares::Type => self.text.contains("FUNCTION_BLOCK"),
+            Declares::Type => self.is_declaration || self.text.contains("FUNCTION_BLOCK"),
             Declares::Global | Declares::Space | Declares::Open => false,
         }
     }
 
     pub fn is_value(&self) -> bool {
         self.declares == Declares::Value
+    }
+
+    /// Whether the names of its values may be after its own.
+    fn is_enumeration(&self) -> bool {
+        self.is_declaration && self.declares == Declares::Type && self.text.contains(" : (\n")
+    }
+
+    fn is_interface(&self) -> bool {
+        self.is_declaration && self.text.starts_with("INTERFACE")
+    }
+
+    fn needs(&self) -> Vec<&'static str> {
+        match self.needs {
+            Needs::These(names) => names.to_vec(),
+            Needs::This(name) => vec![name],
+            Needs::Read => {
+                let others = words(self.text).filter(|it| !it.eq_ignore_ascii_case(self.name));
+                let mut names: Vec<_> = others.flat_map(units).map(|it| it.name).collect();
+                names.sort_unstable();
+                names.dedup();
+                names
+            }
+        }
     }
 
     /// By whose rules of values it computes: what the standard describes is written by the standard's. A unit test's
@@ -94,7 +127,7 @@ pub(crate) const LIST: &str = "Global_Variables";
 const INITIAL_STEP: &str = "INITIAL_STEP";
 const CHARTS: [&str; 2] = ["__Chart", "__MatiecChart"];
 
-const OF_ANY: [&str; 3] = ["TypeClass", "pValue", "diSize"];
+const OF_ANY: [&str; 3] = [ASKING[2], ASKING[3], ASKING[4]];
 
 macro_rules! units {
     ($($declares:ident $name:literal $file:tt $([$($dialect:ident)+ $(: $($library:ident)+)?])? $($need:literal)*;)*) => {
@@ -104,7 +137,8 @@ macro_rules! units {
             declares: Declares::$declares,
             dialects: &[$($(Dialect::$dialect),+)?],
             libraries: &[$($($(stringify!($library)),+)?)?],
-            needs: &[$($need),*],
+            needs: Needs::These(&[$($need),*]),
+            is_declaration: false,
         }),*]
     };
     (@text ($text:expr)) => {
@@ -418,38 +452,85 @@ pub const UNITS: &[Unit] = units! {
     Function "WRITE_PROTECTED_WSTRING" (tcunit::write_protected!("WSTRING")) [Codesys];
 };
 
-static BY_NAME: LazyLock<FxHashMap<Key<'static>, Vec<Unit>>> = LazyLock::new(|| {
-    let mut found: FxHashMap<_, Vec<_>> = FxHashMap::default();
-    UNITS.iter().for_each(|it| found.entry(Key(it.name)).or_default().push(*it));
-    found
-});
+/// What asks for a unit by another name than its own; so do the names of classes of types.
+const ASKING: [&str; 5] = [SYSTEM, INITIAL_STEP, "TypeClass", "pValue", "diSize"];
 
-/// What asks for a unit by another name than its own.
-static ASKING: LazyLock<FxHashSet<Key<'static>>> = LazyLock::new(|| {
-    [SYSTEM, INITIAL_STEP].into_iter().chain(OF_ANY).chain(Class::ALL.iter().map(|it| it.name())).map(Key).collect()
-});
-
-/// The lengths of these and of units' names, by their first letters: most words of a program are
-/// passed over by these.
-static LENGTHS: LazyLock<[u32; 32]> = LazyLock::new(|| {
-    let mut lengths = [0; 32];
-    let own = UNITS.iter().map(|it| it.name).filter(|it| !it.contains('.'));
-    for name in own.chain(ASKING.iter().map(|it| it.0)) {
-        if let Some(lengths) = name.bytes().next().and_then(|it| lengths.get_mut(place_of(it))) {
-            *lengths |= 1 << name.len();
-        }
+static LENGTHS: index::Lengths = {
+    let mut lengths = [0; 1024];
+    let mut at = 0;
+    while at < UNITS.len() {
+        let name = UNITS[at].name.as_bytes();
+        index::with_name(&mut lengths, name, 0, name.len());
+        at += 1;
+    }
+    at = 0;
+    while at < vendor::COUNT {
+        let (text, start, end) = vendor::name_at(at);
+        index::with_name(&mut lengths, text, start, end);
+        at += 1;
+    }
+    at = 0;
+    while at < ASKING.len() {
+        index::with_name(&mut lengths, ASKING[at].as_bytes(), 0, ASKING[at].len());
+        at += 1;
+    }
+    at = 0;
+    while at < Class::ALL.len() {
+        let name = Class::ALL[at].name().as_bytes();
+        index::with_name(&mut lengths, name, 0, name.len());
+        at += 1;
     }
     lengths
-});
+};
 
-/// The place of a name's first letter, of an underscore the last.
-fn place_of(first: u8) -> usize {
-    usize::from(first.to_ascii_uppercase().wrapping_sub(b'A'))
-}
+/// The units, and after them the vendors' declarations, by their names.
+static NUMBERS: index::Numbers = {
+    let mut numbers: index::Numbers = [0; index::PLACES];
+    let mut at = 0;
+    while at < UNITS.len() {
+        let name = UNITS[at].name.as_bytes();
+        index::with_number(&mut numbers, name, 0, name.len(), at as u16 + 1);
+        at += 1;
+    }
+    at = 0;
+    while at < vendor::COUNT {
+        let (text, start, end) = vendor::name_at(at);
+        index::with_number(&mut numbers, text, start, end, (UNITS.len() + at) as u16 + 1);
+        at += 1;
+    }
+    numbers
+};
 
 /// The units of a name, each in other dialects.
 pub(crate) fn units(name: &str) -> impl Iterator<Item = Unit> {
-    BY_NAME.get(&Key(name)).into_iter().flatten().copied()
+    let numbers = index::places(name).map(|it| usize::from(NUMBERS[it])).take_while(|it| *it > 0);
+    numbers.filter_map(|it| unit_at(it - 1)).filter(move |it| it.name.eq_ignore_ascii_case(name))
+}
+
+/// Every unit, also those of vendors' declarations.
+pub fn every_unit() -> impl Iterator<Item = Unit> {
+    (0..UNITS.len() + vendor::COUNT).filter_map(unit_at)
+}
+
+fn unit_at(number: usize) -> Option<Unit> {
+    if let Some(unit) = UNITS.get(number) {
+        return Some(*unit);
+    }
+    let it = vendor::declaration(number - UNITS.len())?;
+    let declares = match it.kind {
+        vendor::Kind::Type | vendor::Kind::Enumeration | vendor::Kind::Interface => Declares::Type,
+        vendor::Kind::Function => Declares::Function,
+        vendor::Kind::Value | vendor::Kind::Enumerator => Declares::Value,
+    };
+    Some(Unit {
+        name: it.name,
+        text: it.text,
+        declares,
+        dialects: it.dialects,
+        libraries: it.libraries,
+        needs: it.of.map_or(Needs::Read, Needs::This),
+        is_declaration: true,
+    })
 }
 
 /// Whether a namespace is the standard library's, in which standard functions are, too: `System.Math`.
@@ -480,9 +561,11 @@ struct Named {
     is_taken: bool,
 }
 
-/// The name of a unit whose own name the program has.
+/// What the name of a unit begins with whose own name the program has.
+pub(crate) const RENAMED: &str = "__own_";
+
 pub(crate) fn renamed(name: &str) -> String {
-    format!("__own_{name}")
+    format!("{RENAMED}{name}")
 }
 
 /// A unit's text, with other names for units whose names the program has. Names after a point are members.
@@ -517,7 +600,7 @@ impl Extended {
     pub fn of(sources: &Sources, options: &Options) -> Option<Self> {
         let mut uses = Uses::default();
         for (source, number) in sources.files().iter().zip(0u16..) {
-            if mentions_any(&source.text) {
+            if mentions_any(&source.text, options.dialect) {
                 uses.read(number, source, sources.defined(source), options);
             }
         }
@@ -530,7 +613,8 @@ impl Extended {
         for it in &named {
             let text =
                 format!("{{dialect '{}'}} {}", it.unit.rules(it.dialect).name(), with_own_names(it.unit.text, &taken));
-            sources.add(Source::new(format!("library/{}.st", it.unit.name.to_ascii_lowercase()), text).bundled());
+            let source = Source::new(format!("library/{}.st", it.unit.name.to_ascii_lowercase()), text);
+            sources.add(if it.unit.is_declaration { source.declarations() } else { source.bundled() });
         }
         Some(Self { sources, named })
     }
@@ -646,7 +730,7 @@ impl Uses {
                 self.declared_in_spaces.insert(any.name);
             } else if is_declared {
                 self.declared.insert(any.name);
-            } else if let Some(unit) = unit.filter(|it| names(it, before, after)) {
+            } else if let Some(unit) = unit.filter(|it| names(it, before, after) || is_operand(it, &word, first)) {
                 let is_qualified = first < at;
                 self.named.push(Named { unit, at: Span { file, start, end }, dialect, is_qualified, is_taken: false });
             }
@@ -669,8 +753,8 @@ impl Uses {
             }
             needed.push(Named { is_taken, ..it });
             // What the library needs is the library's.
-            let inner = |name: &&str| Some(Named { unit: unit(name, it.dialect)?, is_qualified: true, ..it });
-            waiting.extend(it.unit.needs.iter().filter_map(inner));
+            let inner = |name: &str| Some(Named { unit: unit(name, it.dialect)?, is_qualified: true, ..it });
+            waiting.extend(it.unit.needs().into_iter().filter_map(inner));
         }
         needed
     }
@@ -792,10 +876,18 @@ fn names(unit: &Unit, before: Option<(Kind, &str)>, after: Option<Kind>) -> bool
         Declares::Global => !is_after(Kind::Dot) && !matches!(after, Some(Kind::Colon | Kind::OpenParen)),
         Declares::Type => {
             let is_type = is_after(Kind::Colon) || is_after(Kind::Of) || is_after(Kind::To);
-            let extends = before.is_some_and(|it| it.1.eq_ignore_ascii_case("EXTENDS"));
-            (is_type || extends) && after != Some(Kind::OpenParen)
+            let extends = before.is_some_and(|it| is_one_of(&["EXTENDS", "IMPLEMENTS"], it.1));
+            let is_owner = after == Some(Kind::Dot) && !is_after(Kind::Dot) && unit.is_enumeration();
+            let is_listed = unit.is_interface() && is_after(Kind::Comma);
+            (is_type || extends || is_listed) && after != Some(Kind::OpenParen) || is_owner
         }
     }
+}
+
+/// Whether a name is that of a type whose size is asked for, or of which an instance is made.
+fn is_operand<'t>(unit: &Unit, word: &impl Fn(usize) -> &'t str, at: usize) -> bool {
+    let operator = at.checked_sub(2).map(word).unwrap_or_default();
+    unit.declares == Declares::Type && is_one_of(&["SIZEOF", "XSIZEOF", "__NEW"], operator)
 }
 
 fn dialect_of(tokens: &Tokens<'_>, options: &Options) -> Dialect {
@@ -807,32 +899,41 @@ fn dialect_of(tokens: &Tokens<'_>, options: &Options) -> Dialect {
     own.unwrap_or(options.dialect)
 }
 
-/// Whether a text has a word that is a unit's name.
-fn mentions_any(text: &str) -> bool {
-    let lengths = &*LENGTHS;
+/// Whether a text has a word that is the name of a unit in its dialect: the one that is given, or what it says itself.
+fn mentions_any(text: &str, dialect: Dialect) -> bool {
+    let mut names_dialect = None;
+    words(text).filter(|it| may_name(it)).any(|it| {
+        // A vendor's declaration is of few dialects.
+        let is_elsewhere = units(it).next().is_some() && unit(it, dialect).is_none();
+        !is_elsewhere || *names_dialect.get_or_insert_with(|| text.contains("dialect"))
+    })
+}
+
+/// The words of a text that are as long as some unit's name with the same first and last letter.
+fn words(text: &str) -> impl Iterator<Item = &str> {
     let bytes = text.as_bytes();
     let mut at = 0;
-    while let Some(first) = bytes.get(at) {
-        let start = at;
-        at += 1;
-        if !is_word(*first) {
-            continue;
-        }
-        while bytes.get(at).is_some_and(|it| is_word(*it)) {
+    core::iter::from_fn(move || {
+        while let Some(first) = bytes.get(at) {
+            let start = at;
             at += 1;
+            if !is_word(*first) {
+                continue;
+            }
+            while bytes.get(at).is_some_and(|it| is_word(*it)) {
+                at += 1;
+            }
+            if index::may_be(&LENGTHS, *first, bytes[at - 1], at - start) {
+                return text.get(start..at);
+            }
         }
-        let length = at - start;
-        let known = lengths.get(place_of(*first)).copied().unwrap_or(0);
-        if length < 32 && known & (1 << length) != 0 && text.get(start..at).is_some_and(may_name) {
-            return true;
-        }
-    }
-    false
+        None
+    })
 }
 
 /// Whether a word may be a unit's name, or what its name begins with.
 fn may_name(word: &str) -> bool {
-    ASKING.contains(&Key(word)) || units(word).next().is_some()
+    is_one_of(&ASKING, word) || units(word).next().is_some() || is_generic(word)
 }
 
 /// By a table: each character of a program is looked at.

@@ -39,6 +39,8 @@ pub struct Source {
     library: Option<Box<str>>,
     /// It is a part of the compiler, whatever its path is.
     is_bundled: bool,
+    /// Of what has no body in it, nothing says what it does.
+    only_declares: bool,
     /// It is one expression, which is asked about the program, and nothing of the program.
     is_expression: bool,
 }
@@ -137,6 +139,7 @@ impl Source {
             origin: None,
             library: None,
             is_bundled: false,
+            only_declares: false,
             is_expression: false,
         }
     }
@@ -218,6 +221,16 @@ impl Source {
     #[must_use]
     pub fn bundled(self) -> Self {
         Self { is_bundled: true, ..self }
+    }
+
+    /// The same, of a vendor's library: what has no body there needs the machine.
+    #[must_use]
+    pub fn declarations(self) -> Self {
+        Self { is_bundled: true, only_declares: true, ..self }
+    }
+
+    pub fn only_declares(&self) -> bool {
+        self.only_declares
     }
 
     pub fn is_bundled(&self) -> bool {

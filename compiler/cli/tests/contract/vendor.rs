@@ -332,6 +332,34 @@ fn a_library_is_called_as_the_project_refers_to_it() {
     folder.staunch("check Line.plcproj").err(0);
 }
 
+/// Libraries that are not available are reported once, not each name; one of the same solution is found by its name.
+#[test]
+fn a_library_is_missing_once_or_in_the_solution() {
+    let folder = project("library_in_the_solution");
+    let references = r#"<PlaceholderReference Include="Core"><Namespace>Core</Namespace></PlaceholderReference>
+        <PlaceholderReference Include="Tc2_System"><Namespace>Tc2_System</Namespace></PlaceholderReference>
+        </ItemGroup></Project>"#;
+    folder.write("Line.plcproj", PROJECT.replace("</ItemGroup></Project>", references));
+    folder.write(
+        "POUs/FB_Station.TcPOU",
+        STATION.replace("parts : CTU;", "parts : CTU; base : FB_Base; list : ST_List;"),
+    );
+    let missing = folder.staunch("check Line.plcproj").err(1);
+    has(&missing, &["the project refers to a library that is not available: `Core`", "unknown: `FB_Base`, `ST_List`"]);
+    has(&missing, &["rejected with 1 error"]);
+    std::fs::create_dir_all(folder.0.join("Core")).unwrap();
+    let base = "{dialect 'codesys'} FUNCTION_BLOCK FB_Base END_FUNCTION_BLOCK TYPE ST_List : STRUCT n : INT; END_STRUCT; END_TYPE";
+    folder.write("Core/base.st", base);
+    let core =
+        r#"<Project><ItemGroup><Compile Include="base.st"><SubType>Code</SubType></Compile></ItemGroup></Project>"#;
+    folder.write("Core/Core.plcproj", core);
+    let solution = "Microsoft Visual Studio Solution File, Format Version 12.00\n\
+        Project(\"{B1E7}\") = \"Line\", \"Line.plcproj\", \"{1}\"\nEndProject\n\
+        Project(\"{B1E7}\") = \"Core\", \"Core\\Core.plcproj\", \"{2}\"\nEndProject\n";
+    folder.write("Plant.sln", solution);
+    folder.staunch("check Line.plcproj").err(0);
+}
+
 /// A file that holds nothing but VAR_GLOBAL is a list by its name, also where the start of a variable needs code.
 #[test]
 fn a_list_with_a_computed_initial_value_keeps_its_name() {

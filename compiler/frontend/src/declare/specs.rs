@@ -36,9 +36,8 @@ const MAX_CAPACITY: i128 = 32767;
 const LONG_CAPACITY: i128 = 65534;
 
 /// Types of SIMATIC S7 that are not the standard's, and what to write for them.
-const OF_SIMATIC: [(&str, &str); 4] = [
+const OF_SIMATIC: [(&str, &str); 3] = [
     ("S5TIME", "write `TIME`, with literals `T#2s`: the standard's timers take it, and it counts exactly"),
-    ("DTL", "write `LDT`, or `DT` for seconds; `SPLIT_LDT` and `CONCAT_LDT` give and take its parts"),
     ("VARIANT", "write a FUNCTION with the same name for each type, or parameters of `ANY` or `ANY_NUM`"),
     ("IEC_COUNTER", "write the counter's type: `S7.CTU`, `S7.CTD` or `S7.CTUD`"),
 ];

@@ -3,8 +3,27 @@
 use super::{Dialect, bare_block};
 
 /// Those whose names are known: what they have needs none before it.
-const LIBRARIES: [&str; 7] =
-    ["Standard", "Standard64", "Util", "Tc2_Standard", "Tc2_System", "Tc2_Utilities", "Tc2_Math"];
+const LIBRARIES: [&str; 19] = [
+    "Standard",
+    "Standard64",
+    "Util",
+    "Tc2_Standard",
+    "Tc2_System",
+    "Tc2_Utilities",
+    "Tc2_Math",
+    "Tc2_MC2",
+    "Tc2_MC2_Drive",
+    "Tc2_EtherCAT",
+    "Tc2_SerialCom",
+    "Tc2_TcpIp",
+    "Tc2_ControllerToolbox",
+    "Tc2_IoFunctions",
+    "Tc2_ModbusSrv",
+    "Tc3_Module",
+    "Tc3_EventLogger",
+    "Tc3_JsonXml",
+    "Tc3_IotBase",
+];
 
 /// Libraries that are not bundled, and those that they refer to, whose names may be after theirs:
 /// `Tc2_EtherCAT.Tc2_Utilities.TIMESTRUCT`.

@@ -4,65 +4,16 @@ use super::Dialect;
 use super::library::is_one_of;
 
 /// Types and blocks, and the library that they are of.
-const TYPES: [(&str, &[&str]); 1] = [(
-    "Tc2_Utilities",
-    &[
-        "FB_MemRingBufferEx",
-        "FB_StringRingBuffer",
-        "FB_FileRingBuffer",
-        "FB_LocalSystemTime",
-        "NT_GetTime",
-        "RTC_EX",
-        "RTC_EX2",
-        "Profiler",
-        "FB_BasicPID",
-    ],
-)];
+const TYPES: [(&str, &[&str]); 1] =
+    [("Tc2_Utilities", &["FB_MemRingBufferEx", "FB_FileRingBuffer", "RTC_EX", "FB_BasicPID"])];
 
 /// What the blocks of PLCopen's motion control, `MC_Power`, are of.
 const MOTION: &str = "`Tc2_MC2` of TwinCAT, or `SM3_Basic` of CODESYS";
 
 /// Types of libraries that are not bundled, by which programs ask for these.
-const NOT_BUNDLED: [(&str, &[&str]); 5] = [
-    (MOTION, &["AXIS_REF"]),
+const NOT_BUNDLED: [(&str, &[&str]); 2] = [
     ("`SM3_Basic` of CODESYS", &["AXIS_REF_SM3"]),
-    (
-        "`Tc2_System` of TwinCAT",
-        &[
-            "FB_FileOpen",
-            "FB_FileClose",
-            "FB_FileRead",
-            "FB_FileWrite",
-            "FB_FileGets",
-            "FB_FilePuts",
-            "FB_FileSeek",
-            "FB_FileTell",
-            "FB_FileEOF",
-            "FB_FileDelete",
-            "FB_FileRename",
-            "FB_CreateDir",
-            "FB_RemoveDir",
-            "ADSREAD",
-            "ADSWRITE",
-            "ADSRDWRT",
-            "ADSRDSTATE",
-        ],
-    ),
-    (
-        "`Tc3_JsonXml` of TwinCAT",
-        &["FB_JsonSaxWriter", "FB_JsonSaxReader", "FB_JsonDomParser", "FB_JsonReadWriteDatatype", "FB_XmlDomParser"],
-    ),
-    (
-        "`Tc2_TcpIp` of TwinCAT",
-        &[
-            "FB_SocketConnect",
-            "FB_SocketListen",
-            "FB_SocketAccept",
-            "FB_SocketSend",
-            "FB_SocketReceive",
-            "FB_SocketClose",
-        ],
-    ),
+    ("`Tc3_JsonXml` of TwinCAT", &["FB_JsonSaxReader", "FB_XmlDomParser"]),
 ];
 
 /// Members of TwinCAT's types that describe the machine, which a program here knows nothing of.

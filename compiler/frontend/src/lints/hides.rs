@@ -33,7 +33,7 @@ fn standard(dialect: Dialect, kind: PouKind, name: &str) -> Option<&'static str>
     } else if !is_function && bare_block(dialect, name).is_some() {
         Some("a standard function block")
     } else {
-        let unit = prelude::unit(name, dialect).filter(|it| it.is_function() == is_function);
+        let unit = prelude::unit(name, dialect).filter(|it| it.is_function() == is_function && !it.is_declaration);
         unit.map(|_| "in the library that is bundled with Staunch")
     }
 }

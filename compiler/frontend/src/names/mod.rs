@@ -368,9 +368,10 @@ impl<'s> Names<'s> {
             return Found::Several(several.iter().map(|it| full(it.0)).collect());
         }
         let found = match prefix {
-            None if let [inner, rest @ ..] = between
-                && library::leads_to(site.dialect, first, inner.text)
-                && self.is_library(site, inner.text) =>
+            None | Some(Prefix::Library)
+                if let [inner, rest @ ..] = between
+                    && library::leads_to(site.dialect, first, inner.text)
+                    && self.is_library(site, inner.text) =>
             {
                 return self.qualified(site, inner.text, rest, last, sense);
             }
@@ -378,6 +379,7 @@ impl<'s> Names<'s> {
             Some(Prefix::Library) if is_list_of_a_library(between) => {
                 self.of_library(site.dialect, first, last, sense).filter(|_| sense == Sense::Value)
             }
+            Some(Prefix::Library) if let [ty] = between => self.enumerator_of_library(site.dialect, first, ty.text),
             _ if !between.is_empty() => None,
             Some(Prefix::Enumeration(slot)) => Some(Meaning::Enumerator(slot)),
             Some(Prefix::Globals) => return self.global(site, last, sense),
@@ -386,6 +388,14 @@ impl<'s> Names<'s> {
             None => None,
         };
         found.map_or(Found::Nothing, Found::One)
+    }
+
+    /// `Tc2_MC2.MC_Direction.MC_Positive_Direction`
+    fn enumerator_of_library(&self, dialect: Dialect, of: &str, ty: &str) -> Option<Meaning> {
+        match self.of_library(dialect, of, ty, Sense::Type)? {
+            Meaning::Declared(Entry::Type(slot)) => Some(Meaning::Enumerator(slot)),
+            _ => None,
+        }
     }
 
     fn prefix(&self, site: Site, name: &str) -> Option<Prefix> {
