@@ -18,26 +18,29 @@ fn json(text: &str) -> Json {
     serde_json::from_str(text).unwrap()
 }
 
-/// The colour of a keyword: its pattern's number in the grammar.
-fn group(kind: Kind) -> usize {
+/// The keywords of a colour, in the order of the grammar's patterns; the last pattern has all others.
+fn colours() -> [&'static [Kind]; 3] {
     use Kind::{
         And, AndThen, By, Case, Catch, Continue, Do, Else, Elsif, EndCase, EndFor, EndIf, EndRepeat, EndTry, EndWhile,
-        Exit, False, Finally, For, If, Mod, Not, Of, Or, OrElse, Repeat, Return, Then, To, True, Try, Until, While, Xor,
+        Exit, False, Finally, For, If, Mod, Not, Of, Or, OrElse, Repeat, Return, Then, To, True, Try, Until, While,
+        Xor,
     };
-    match kind {
-        If | Then | Elsif | Else | EndIf | Case | Of | EndCase | For | To | By | Do | EndFor | While | EndWhile
-        | Repeat | Until | EndRepeat | Try | Catch | Finally | EndTry | Exit | Continue | Return => 0,
-        Not | And | AndThen | Or | OrElse | Xor | Mod => 1,
-        True | False => 2,
-        _ => 3,
-    }
+    [
+        &[
+            If, Then, Elsif, Else, EndIf, Case, Of, EndCase, For, To, By, Do, EndFor, While, EndWhile, Repeat, Until,
+            EndRepeat, Try, Catch, Finally, EndTry, Exit, Continue, Return,
+        ],
+        &[Not, And, AndThen, Or, OrElse, Xor, Mod],
+        &[True, False],
+    ]
 }
 
 /// The patterns of all keywords. A word after a point is a member, after `#` an enumerator.
 fn patterns() -> [String; 4] {
     let mut words = [const { Vec::new() }; 4];
     for (word, kind) in Kind::keywords() {
-        words[group(kind)].push(word);
+        let colour = colours().iter().position(|it| it.contains(&kind));
+        words[colour.unwrap_or(colours().len())].push(word);
     }
     words.map(|it| format!(r"(?i)(?<![\w.#%])(?:{})\b", it.join("|")))
 }

@@ -8,7 +8,7 @@ const { showTrace } = require("./trace");
 
 const server = new Server();
 
-async function activate(context) {
+function activate(context) {
     context.subscriptions.push(
         vscode.commands.registerCommand("staunch.restart", () => server.restart()),
         vscode.commands.registerCommand("staunch.showTrace", (uri) => showTrace(context, uri)),
@@ -19,7 +19,8 @@ async function activate(context) {
         }),
     );
     tests(context);
-    await server.restart();
+    // Commands do not wait for it.
+    void server.restart();
 }
 
 function deactivate() {

@@ -111,7 +111,7 @@ function tests(context) {
         const line = (text) => {
             const found = object(text);
             if (found?.reason !== "test") {
-                if (found && found.reason !== "tests") problems.push(found.message ?? text);
+                if (found && found.reason !== "tests") problems.push(found.rendered ?? found.message ?? text);
                 return;
             }
             const file = path.resolve(parent.id, found.file);
@@ -135,13 +135,14 @@ function tests(context) {
     }
 
     function report(made, item, found) {
-        if (found.result === "passed" || found.result === "ok") return made.passed(item);
+        if (found.result === "passed") return made.passed(item);
         if (found.result === "skipped") return made.skipped(item);
         const message = new vscode.TestMessage(found.message || "failed");
         // `blower.st:17:5: …`, where it failed.
-        const at = /:(\d+):(\d+): /.exec(found.message ?? "");
-        const place = at ? new vscode.Position(at[1] - 1, at[2] - 1) : item.range.start;
-        message.location = new vscode.Location(item.uri, place);
+        const at = /^(.+?):(\d+):(\d+): /m.exec(found.message ?? "");
+        message.location = at
+            ? new vscode.Location(vscode.Uri.file(path.resolve(item.parent.id, at[1])), new vscode.Position(at[2] - 1, at[3] - 1))
+            : new vscode.Location(item.uri, item.range);
         made.failed(item, message);
     }
 
