@@ -119,12 +119,15 @@ function tests(context) {
             // The filter is a part of a title: others may have it, too.
             if (only && item !== only) return;
             waiting.delete(item);
+            const said = [`${found.result.padEnd(8)}${found.title}`, found.message].filter(Boolean).join("\n");
+            made.appendOutput(`${said}\n`.replace(/\r?\n/g, "\r\n"), undefined, item);
             report(made, item, found);
         };
         try {
-            const { out, err } = await command.run(parent.uri, args, { cwd: parent.id, token, line });
-            made.appendOutput((err || out).replace(/\r?\n/g, "\r\n"));
-            const message = new vscode.TestMessage([...problems, err].filter(Boolean).join("\n") || "It was not run.");
+            const { err } = await command.run(parent.uri, args, { cwd: parent.id, token, line });
+            const said = [...problems, err].filter(Boolean).join("\n");
+            made.appendOutput(said.replace(/\r?\n/g, "\r\n"));
+            const message = new vscode.TestMessage(said || "It was not run.");
             if (token.isCancellationRequested) waiting.forEach((it) => made.skipped(it));
             else waiting.forEach((it) => made.errored(it, message));
             if (problems.length > 0 && waiting.size === 0) made.errored(parent, message);

@@ -64,9 +64,10 @@ const panels = new Map();
 function show(context, title, html) {
     let panel = panels.get(title);
     if (panel) {
-        panel.reveal(undefined, true);
+        panel.reveal();
     } else {
-        const where = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
+        // Not next to the source: names and values take much of a narrow page.
+        const where = vscode.ViewColumn.Active;
         panel = vscode.window.createWebviewPanel("staunch.trace", title, where, { enableScripts: true, retainContextWhenHidden: true });
         panel.onDidDispose(() => panels.delete(title));
         panels.set(title, panel);
