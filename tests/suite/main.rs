@@ -22,6 +22,7 @@ mod turns;
 
 mod architecture;
 mod documents;
+mod editors;
 mod index;
 mod layers;
 mod layout;

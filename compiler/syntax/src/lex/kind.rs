@@ -255,6 +255,11 @@ const fn hash(word: &[u8]) -> usize {
 }
 
 impl Kind {
+    /// All reserved words.
+    pub fn keywords() -> impl Iterator<Item = (&'static str, Self)> {
+        WORDS.iter().copied()
+    }
+
     /// The keyword that a word is, in any case.
     pub(super) fn of_word(word: &[u8]) -> Option<Self> {
         let mut slot = hash(word);
