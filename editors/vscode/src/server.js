@@ -6,6 +6,19 @@ const command = require("./command");
 
 const FILES = "**/*.{st,iecst,TcPOU,TcGVL,TcDUT,TcIO,TcTLEO,scl,plcproj,L5X}";
 
+// The server sends what is wrong by itself, also in files that depend on a change. Asked for it as well, VS Code would show it twice.
+const sent = {
+    fillClientCapabilities(capabilities) {
+        delete capabilities.textDocument?.diagnostic;
+    },
+    preInitialize(capabilities) {
+        delete capabilities.diagnosticProvider;
+    },
+    initialize() {},
+    getState: () => ({ kind: "static" }),
+    clear() {},
+};
+
 class Server {
     constructor() {
         this.turn = Promise.resolve();
@@ -37,6 +50,7 @@ class Server {
                 synchronize: { fileEvents: watchers },
             },
         );
+        this.client.registerFeature(sent);
         await this.client.start().catch((error) => vscode.window.showErrorMessage(`Staunch: ${error.message}`));
     }
 
