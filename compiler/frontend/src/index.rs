@@ -8,7 +8,7 @@ pub(crate) mod recorder;
 pub use definition::{DefId, Definition, DefinitionKind};
 pub use recorder::Meaning;
 
-use crate::source::Span;
+use crate::source::{Sources, Span};
 use crate::{Diagnostic, ast};
 use recorder::{Offered, Recorder};
 use rustc_hash::FxHashMap;
@@ -45,6 +45,13 @@ pub struct Offer {
     pub is_expected: bool,
 }
 
+/// Whether a part of a text is one name, in quotes perhaps.
+fn is_name(text: &str) -> bool {
+    let bare = text.strip_prefix(['"', '#']).unwrap_or(text);
+    let bare = bare.strip_suffix('"').unwrap_or(bare);
+    !bare.is_empty() && (bare.len() < text.len() || bare.chars().all(|it| it.is_alphanumeric() || it == '_'))
+}
+
 impl Index {
     /// One that has all that a name could be, where one begins at a place.
     pub(crate) fn asked(asked: Option<(u16, u32)>) -> Self {
@@ -59,12 +66,14 @@ impl Index {
     }
 
     /// Adds what checking has found out.
-    pub(crate) fn add(&mut self, recorder: Recorder) {
+    pub(crate) fn add(&mut self, recorder: Recorder, sources: &Sources) {
         let known: FxHashMap<Span, DefId> = self.ids().map(|(id, it)| (it.name, id)).collect();
         let mut uses: FxHashMap<Span, Meaning> = self.uses.drain(..).map(|it| (it.span, it.meaning)).collect();
         let (found, offered) = recorder.settled();
         for (span, target) in found {
+            // What the compiler writes out has the place of what it stands for.
             if !known.contains_key(&span)
+                && is_name(sources.text(span))
                 && let Some(meaning) = target.meaning(|declared| known.get(&declared).copied())
             {
                 uses.insert(span, meaning);

@@ -231,7 +231,7 @@ fn run_with(
     }
     let tests = program::tests::tests(&mut declarations, groups);
     if let (Some(index), Some(found)) = (&mut index, declarations.log.index.take()) {
-        index.add(found);
+        index.add(found, sources);
     }
     let readdressed = std::mem::take(&mut declarations.log.readdressed);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();

@@ -156,7 +156,9 @@ fn completion_offers_what_could_be_there() {
     let types = labels(&types);
     assert!(["Pump", "State", "INT", "TON", "CTU"].iter().all(|it| types.contains(it)), "{types:?}");
     assert!(!types.contains(&"level"));
-    assert_eq!(offered(&mut editor, "(* le| *)"), Vec::<String>::new());
+    for aside in ["(* le| *)", "// n|", "text := 'n|"] {
+        assert_eq!(offered(&mut editor, aside), Vec::<String>::new(), "{aside}");
+    }
     editor.close();
 }
 

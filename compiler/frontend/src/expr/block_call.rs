@@ -312,7 +312,7 @@ impl<'s> Checker<'_, 's> {
         span: Span,
     ) -> Option<Vec<Given<'a, 's>>> {
         let owner = self.decl.pous[slot].ast.name.text;
-        let parameters: Vec<_> = formals.iter().map(|it| Parameter::of_formal(it)).collect();
+        let parameters: Vec<_> = formals.iter().map(Parameter::of_formal).collect();
         let is_known = |it: &ast::Argument<'s>| match &it.kind {
             ast::ArgumentKind::Input(name, _) | ast::ArgumentKind::Output { name, .. } => {
                 formals.iter().any(|it| it.name.text.eq_ignore_ascii_case(name.text))

@@ -137,7 +137,7 @@ impl<'s> Checker<'_, 's> {
         let formals = &signature.formals;
         let is_own = |it: &&ast::Argument<'s>| !is_en(it) || formals.iter().any(|formal| is_named(it, formal.name));
         let own: Vec<_> = arguments.iter().filter(is_own).cloned().collect();
-        let parameters: Vec<_> = formals.iter().map(|it| Parameter::of_formal(it)).collect();
+        let parameters: Vec<_> = formals.iter().map(Parameter::of_formal).collect();
         let owner = self.decl.pous[slot].ast.name;
         let given = self.tried(whole, |this| {
             let given =

@@ -118,8 +118,7 @@ impl<'s> Checker<'_, 's> {
         arguments: &'a [ast::Argument<'s>],
     ) -> Option<(Vec<Given<'a, 's>>, bool)> {
         let (owner, formals) = (self.decl.pous[called.slot].ast.name.text, &signature.formals);
-        let parameter = |it: &Formal<'s>| Parameter::of_formal(it);
-        let parameters: Vec<_> = formals.iter().map(parameter).collect();
+        let parameters: Vec<_> = formals.iter().map(Parameter::of_formal).collect();
         let given = self.bind(owner, &parameters, arguments, |name| Self::unknown_formal(owner, formals, name))?;
         let is_optional = |this: &Self, at: usize| this.has_initial(&formals[at], called.slot);
         if self.decl.pous[called.slot].ast.kind == ast::PouKind::Method {

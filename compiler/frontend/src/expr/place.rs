@@ -247,6 +247,10 @@ impl<'s> Checker<'_, 's> {
         let this = self.this()?.place;
         self.offer_members(name, this.ty);
         let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
+        if self.decl.log.is_asked(name.span) {
+            let own = scope.variables.iter().map(|it| it.name).filter(|it| !it.text.starts_with("__"));
+            own.for_each(|it| self.decl.log.offer_expected(it.text, Named::Declared(it.span)));
+        }
         let Some(variable) = scope.get(name.text).cloned() else {
             // A METHOD that is inherited has been looked at before.
             let is_reported = self.decl.log.diagnostics.iter().any(|it| it.span == name.span);

@@ -61,7 +61,15 @@ fn with_name(text: &str, start: usize, at: u32) -> String {
 fn is_aside(source: &Source, place: Option<Place>) -> bool {
     let Some(place) = place else { return true };
     let tokens = lex(place.file, &source.text);
-    tokens.comments.iter().any(|it| it.0 < place.offset && place.offset < it.1)
+    let at = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
+    // A comment to the end of its line goes on there.
+    let is_of_line = |start: u32| source.text.get(at(start)..).is_some_and(|it| it.starts_with("//"));
+    let holds =
+        |it: &(u32, u32)| it.0 < place.offset && (place.offset < it.1 || place.offset == it.1 && is_of_line(it.0));
+    let line = source.text.get(..at(place.offset)).unwrap_or_default().rsplit('\n').next().unwrap_or_default();
+    // A text ends with its line at the latest.
+    let is_text = line.matches('\'').count() % 2 == 1;
+    is_text || tokens.comments.iter().any(holds)
 }
 
 fn item(analysis: &Analysis, offer: &Offer) -> CompletionItem {

@@ -5,7 +5,7 @@ use crate::place::Place;
 use crate::project::{Analysis, Documents, Project};
 use crate::uri;
 use gen_lsp_types::{Range, TextEdit, WorkspaceEdit};
-use staunch_frontend::{DefId, Severity, Span};
+use staunch_frontend::{DefId, DefinitionKind, Severity, Span};
 use staunch_syntax::lex::{Kind, lex};
 use std::collections::{BTreeMap, HashMap};
 
@@ -22,6 +22,13 @@ fn renamable(analysis: &Analysis, place: Place) -> Result<DefId, String> {
     let (span, _) = analysis.at(place).ok_or("there is no name here")?;
     let name = analysis.text(span);
     let id = analysis.definition_at(place).ok_or_else(|| format!("`{name}` is not declared in a source"))?;
+    if !is_name(name) {
+        return Err(format!("`{name}` is not a name that can be another"));
+    }
+    let definition = analysis.index.get(id);
+    if analysis.source(definition.name.file).is_assembled() && is_of_the_file(definition.kind) {
+        return Err(format!("`{name}` is the name of an object of its file, too: rename it in the original system"));
+    }
     match family(analysis, id).into_iter().find(|it| !analysis.is_own(analysis.index.get(*it).name)) {
         Some(_) => Err(format!("`{name}` is declared in a library, or where the text is not a part of the file")),
         None => Ok(id),
@@ -60,6 +67,18 @@ pub fn rename(project: &mut Project, documents: &Documents, place: Place, new: &
         return Err(format!("`{new}` means something else at a place where `{old}` is used, or the other way round"));
     }
     Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })
+}
+
+/// Whether a file of another system's has such a name outside of its texts.
+const fn is_of_the_file(kind: DefinitionKind) -> bool {
+    !matches!(
+        kind,
+        DefinitionKind::Variable(_)
+            | DefinitionKind::Constant
+            | DefinitionKind::Member
+            | DefinitionKind::Enumerator
+            | DefinitionKind::Label
+    )
 }
 
 fn is_name(text: &str) -> bool {
@@ -102,7 +121,10 @@ fn replaced(analysis: &Analysis, file: u16, spans: &[Span], new: &str) -> String
     let source = analysis.source(file);
     let document = source.file();
     let mut text = document.text.clone();
-    for span in spans.iter().rev().map(|it| source.in_file(*it)) {
+    // The pieces of a text may be in another order in the file.
+    let mut places: Vec<_> = spans.iter().map(|it| source.in_file(*it)).collect();
+    places.sort_unstable_by_key(|it| it.start);
+    for span in places.into_iter().rev() {
         let at = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
         text.replace_range(at(span.start)..at(span.end), new);
     }

@@ -3,12 +3,12 @@
 use crate::answers::tokens::{MODIFIERS, TYPES};
 use gen_lsp_types::{
     CallHierarchyProvider, CodeActionKind, CodeActionOptions, CodeActionProvider, CompletionOptions,
-    DefinitionProvider, DiagnosticOptions, DiagnosticProvider, DocumentFormattingProvider, DocumentHighlightProvider,
-    DocumentRangeFormattingProvider, DocumentSymbolProvider, FoldingRangeProvider, Full, HoverProvider,
-    ImplementationProvider, InitializeResult, InlayHintProvider, ReferencesProvider, RenameOptions, RenameProvider,
-    Save, SelectionRangeProvider, SemanticTokensLegend, SemanticTokensOptions, SemanticTokensProvider,
-    ServerCapabilities, ServerInfo, SignatureHelpOptions, TextDocumentSync, TextDocumentSyncKind,
-    TextDocumentSyncOptions, TypeDefinitionProvider, TypeHierarchyProvider, WorkspaceSymbolProvider,
+    DefinitionProvider, DocumentFormattingProvider, DocumentHighlightProvider, DocumentRangeFormattingProvider,
+    DocumentSymbolProvider, FoldingRangeProvider, Full, HoverProvider, ImplementationProvider, InitializeResult,
+    InlayHintProvider, ReferencesProvider, RenameOptions, RenameProvider, Save, SelectionRangeProvider,
+    SemanticTokensLegend, SemanticTokensOptions, SemanticTokensProvider, ServerCapabilities, ServerInfo,
+    SignatureHelpOptions, TextDocumentSync, TextDocumentSyncKind, TextDocumentSyncOptions, TypeDefinitionProvider,
+    TypeHierarchyProvider, WorkspaceSymbolProvider,
 };
 use serde_json::Value as Json;
 
@@ -63,11 +63,8 @@ fn capabilities() -> ServerCapabilities {
             full: Some(Full::Bool(true)),
             ..SemanticTokensOptions::default()
         })),
-        diagnostic_provider: Some(DiagnosticProvider::DiagnosticOptions(DiagnosticOptions {
-            identifier: Some("staunch".to_owned()),
-            inter_file_dependencies: true,
-            ..DiagnosticOptions::default()
-        })),
+        // Diagnostics are sent by themselves, and given to who asks: an editor that is told of both shows each twice.
+        diagnostic_provider: None,
         ..ServerCapabilities::default()
     }
 }
