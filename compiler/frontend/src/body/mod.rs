@@ -184,7 +184,9 @@ fn check_body<'s>(
     let signature = decl.signature(slot)?;
     let is_generic = decl.is_generic(slot) || decl.pous[slot].instance.is_some();
     if let Some(index) = &decl.log.index {
-        index.mute(pou.home.is_some());
+        // The copy of an inherited routine means what the base's own does.
+        let class = decl.pous[slot].owner.map(|it| decl.pous[it].ast.name.span);
+        index.mute(pou.home.is_some_and(|it| Some(it.span) != class));
     }
     let mut checker = Checker::of_body(decl, slot, &signature);
     checker.instance = is_generic.then_some(slot);

@@ -246,10 +246,15 @@ impl<'s> Checker<'_, 's> {
         match path.as_slice() {
             [name] => match self.decl.dialect(name.span).rules().named(name.text) {
                 Some(ty) => Some(Type::Elementary(ty)),
-                None => self.decl.type_of_name(*name),
+                None => self.noted_type(path.as_slice()),
             },
-            path => self.decl.type_of_path(path),
+            path => self.noted_type(path),
         }
+    }
+
+    fn noted_type(&mut self, path: &[ast::Name<'s>]) -> Option<Type> {
+        self.decl.note_path(path, &self.decl.lookup(path, Sense::Type));
+        self.decl.type_of_path(path)
     }
 
     /// How a type gets a pool.

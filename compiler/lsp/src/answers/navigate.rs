@@ -4,7 +4,8 @@ use super::describe::describe;
 use crate::place::Place;
 use crate::project::Analysis;
 use gen_lsp_types::{Contents, DocumentHighlight, DocumentHighlightKind, Hover, Location, MarkupContent, MarkupKind};
-use staunch_frontend::{DefId, DefinitionKind, Meaning, Span};
+use staunch_frontend::ast::VarKind;
+use staunch_frontend::{DefId, Definition, DefinitionKind, Meaning, Span};
 
 pub fn hover(analysis: &Analysis, place: Place) -> Option<Hover> {
     let (span, meaning) = analysis.at(place)?;
@@ -59,8 +60,41 @@ pub fn is_same(analysis: &Analysis, one: DefId, other: DefId) -> bool {
     is_routine(one) && is_routine(other) && analysis.name(one).eq_ignore_ascii_case(analysis.name(other))
 }
 
-/// The declarations that have one name together: a METHOD, and those that it overrides or that override it.
+/// The declarations that have one name together: a METHOD with those that it overrides or that override it, and their
+/// parameters; a global variable and each VAR_EXTERNAL of it.
 pub fn family(analysis: &Analysis, id: DefId) -> Vec<DefId> {
+    let definition = analysis.index.get(id);
+    if is_global(analysis, definition) {
+        let others = analysis.index.ids().filter(|it| it.0 != id && is_global(analysis, it.1));
+        let alike = others.filter(|it| analysis.name(it.0).eq_ignore_ascii_case(analysis.name(id)));
+        return core::iter::once(id).chain(alike.map(|it| it.0)).collect();
+    }
+    let Some(owner) = definition.owner else { return vec![id] };
+    let is_parameter =
+        matches!(definition.kind, DefinitionKind::Variable(VarKind::Input | VarKind::Output | VarKind::InOut));
+    if is_parameter && analysis.index.get(owner).kind == DefinitionKind::Method {
+        let routines = routines(analysis, owner).into_iter();
+        let parts = routines.flat_map(|it| analysis.index.parts_of(it)).filter(|it| it.0 != id);
+        let alike = parts.filter(|it| analysis.name(it.0).eq_ignore_ascii_case(analysis.name(id)));
+        return core::iter::once(id).chain(alike.map(|it| it.0)).collect();
+    }
+    routines(analysis, id)
+}
+
+/// Whether a variable is a global one, or stands for one.
+fn is_global(analysis: &Analysis, it: &Definition) -> bool {
+    let is_outside = it.owner.is_none_or(|it| {
+        matches!(analysis.index.get(it).kind, DefinitionKind::Configuration | DefinitionKind::Resource)
+    });
+    match it.kind {
+        DefinitionKind::Variable(VarKind::External) => true,
+        DefinitionKind::Variable(VarKind::Global) | DefinitionKind::Constant => is_outside,
+        _ => false,
+    }
+}
+
+/// A METHOD or PROPERTY, with those of other classes that are called where it is.
+fn routines(analysis: &Analysis, id: DefId) -> Vec<DefId> {
     let Some(owner) = analysis.index.get(id).owner else { return vec![id] };
     let (mut classes, mut at) = (vec![owner], 0);
     while at < classes.len() {

@@ -22,6 +22,9 @@ fn renamable(analysis: &Analysis, place: Place) -> Result<DefId, String> {
     let (span, _) = analysis.at(place).ok_or("there is no name here")?;
     let name = analysis.text(span);
     let id = analysis.definition_at(place).ok_or_else(|| format!("`{name}` is not declared in a source"))?;
+    if OF_THE_SYSTEM.iter().any(|it| it.eq_ignore_ascii_case(name)) {
+        return Err(format!("`{name}` has its meaning by its name"));
+    }
     if !is_name(name) {
         return Err(format!("`{name}` is not a name that can be another"));
     }
@@ -68,6 +71,9 @@ pub fn rename(project: &mut Project, documents: &Documents, place: Place, new: &
     }
     Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })
 }
+
+/// Names by which a system calls a METHOD, or gives a value.
+const OF_THE_SYSTEM: [&str; 7] = ["FB_init", "FB_exit", "FB_reinit", "bInitRetains", "bInCopyCode", "EN", "ENO"];
 
 /// Whether a file of another system's has such a name outside of its texts.
 const fn is_of_the_file(kind: DefinitionKind) -> bool {

@@ -1,4 +1,5 @@
 //! An editor in a test: it opens documents, types, and asks.
+#![allow(dead_code, reason = "each test takes a part of it")]
 
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value as Json, json};

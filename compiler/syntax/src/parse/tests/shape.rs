@@ -205,5 +205,11 @@ fn initial(it: &Initial<'_>) -> String {
             let fields: Vec<_> = fields.iter().map(|(name, it)| format!("{}={}", name.text, initial(it))).collect();
             format!("({})", fields.join(","))
         }
+        InitialKind::Indexed(elements) => {
+            let index = |it: &[Expr<'_>]| it.iter().map(expr).collect::<Vec<_>>().join(",");
+            let elements: Vec<_> = elements.iter().map(|(at, it)| format!("[{}]={}", index(at), initial(it))).collect();
+            format!("[{}]", elements.join(","))
+        }
+        InitialKind::Members(values) => format!("({})", values.iter().map(initial).collect::<Vec<_>>().join(",")),
     }
 }
