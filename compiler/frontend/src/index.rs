@@ -10,7 +10,7 @@ pub use recorder::Meaning;
 
 use crate::source::{Sources, Span};
 use crate::{Diagnostic, ast};
-use recorder::{Offered, Recorder};
+use recorder::{Named, Offered, Recorder};
 use rustc_hash::FxHashMap;
 
 /// A program as an editor asks about it. It is there for sources with mistakes, too: what could not be understood has no
@@ -45,11 +45,15 @@ pub struct Offer {
     pub is_expected: bool,
 }
 
-/// Whether a part of a text is one name, in quotes perhaps.
+/// A name without its quotes, as S7 writes them.
+fn bare(text: &str) -> &str {
+    text.strip_prefix(['"', '#']).unwrap_or(text).trim_end_matches('"')
+}
+
+/// Whether a part of a text is a name.
 fn is_name(text: &str) -> bool {
-    let bare = text.strip_prefix(['"', '#']).unwrap_or(text);
-    let bare = bare.strip_suffix('"').unwrap_or(bare);
-    !bare.is_empty() && (bare.len() < text.len() || bare.chars().all(|it| it.is_alphanumeric() || it == '_'))
+    let begins = |it: char| it.is_alphabetic() || it == '_';
+    text != bare(text) || text.starts_with(begins) && text.chars().all(|it| begins(it) || it.is_numeric())
 }
 
 impl Index {
@@ -71,9 +75,16 @@ impl Index {
         let mut uses: FxHashMap<Span, Meaning> = self.uses.drain(..).map(|it| (it.span, it.meaning)).collect();
         let (found, offered) = recorder.settled();
         for (span, target) in found {
-            // What the compiler writes out has the place of what it stands for.
+            // What the compiler writes out has the place of what it stands for. The library's names may be other ones.
+            let text = sources.text(span);
+            let is_written = match &target {
+                Named::Declared(it) => {
+                    sources.get(it.file).is_bundled() || bare(text).eq_ignore_ascii_case(bare(sources.text(*it)))
+                }
+                _ => is_name(text),
+            };
             if !known.contains_key(&span)
-                && is_name(sources.text(span))
+                && is_written
                 && let Some(meaning) = target.meaning(|declared| known.get(&declared).copied())
             {
                 uses.insert(span, meaning);

@@ -81,6 +81,7 @@ fn program(text: &str, options: &Options) -> Option<String> {
     // What a condition asks for by name is not a name.
     let is_plain = !text.contains("{IF ")
         && !text.contains("to_string")
+        && !text.contains("\nACTIONS ")
         && !text.contains("{external")
         && !text.contains("attribute 'instance-path'");
     compilation.program.filter(|_| is_plain).map(|it| format!("{it:?}"))

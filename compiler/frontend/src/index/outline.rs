@@ -53,7 +53,11 @@ impl Outline {
             self.found[id.0].ty = Some(result.span);
             self.spec(result, id);
         }
-        pou.blocks.iter().for_each(|it| self.block(it, Some(id)));
+        // What is assigned to a PROPERTY is an input of its SET, by the PROPERTY's name.
+        let is_own = |it: &&VarDecl<'_>| it.names.first().is_none_or(|it| it.span != pou.name.span);
+        for block in &pou.blocks {
+            block.vars.iter().filter(is_own).for_each(|it| self.variable(it, kind_in(block), Some(id)));
+        }
         pou.routines.iter().for_each(|it| self.pou(it, Some(id)));
         ast::each_statement(&pou.body, &mut |it| {
             if let StatementKind::Label(name) = &it.kind {
@@ -66,9 +70,7 @@ impl Outline {
     }
 
     fn block(&mut self, block: &VarBlock<'_>, owner: Option<DefId>) {
-        let is_constant = block.constant.is_some() && !matches!(block.kind, VarKind::Input | VarKind::InOut);
-        let kind = if is_constant { DefinitionKind::Constant } else { DefinitionKind::Variable(block.kind) };
-        block.vars.iter().for_each(|it| self.variable(it, kind, owner));
+        block.vars.iter().for_each(|it| self.variable(it, kind_in(block), owner));
     }
 
     fn variable(&mut self, declared: &VarDecl<'_>, kind: DefinitionKind, owner: Option<DefId>) {
@@ -131,6 +133,12 @@ impl Outline {
             }
         }
     }
+}
+
+/// What the variables of a block are.
+const fn kind_in(block: &VarBlock<'_>) -> DefinitionKind {
+    let is_constant = block.constant.is_some() && !matches!(block.kind, VarKind::Input | VarKind::InOut);
+    if is_constant { DefinitionKind::Constant } else { DefinitionKind::Variable(block.kind) }
 }
 
 const fn kind_of(kind: PouKind) -> DefinitionKind {

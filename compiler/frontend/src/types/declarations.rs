@@ -592,11 +592,6 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// The type that a name means.
-    pub fn type_of_name(&mut self, name: ast::Name<'_>) -> Option<Type> {
-        self.type_of_path(&[name])
-    }
-
     /// The type that a path names.
     pub fn type_of_path(&mut self, path: &[ast::Name<'_>]) -> Option<Type> {
         match self.lookup(path, Sense::Type) {
