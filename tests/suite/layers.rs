@@ -7,7 +7,7 @@ use std::path::Path;
 
 const SYNTAX: &str = "compiler/syntax/src";
 const SYNTAX_LAYERS: [&str; 9] =
-    ["vendor", "source", "spelling", "diagnostic", "ast", "foreign", "lex", "parse", "format"];
+    ["spelling", "vendor", "source", "diagnostic", "ast", "foreign", "lex", "parse", "format"];
 
 const ROOT: &str = "compiler/frontend/src";
 
