@@ -123,8 +123,8 @@ fn element<'w>(words: &[&'w str]) -> &'w str {
         let sizes = [("char", "USINT"), ("short", "UINT"), ("long", "UDINT")];
         return sizes.iter().find(|it| is(it.0)).map_or("UINT", |it| it.1);
     }
-    let plain = words.iter().copied().filter(|it| !QUALIFIERS.iter().any(|of| it.eq_ignore_ascii_case(of)));
-    let ty = plain.last();
+    let mut plain = words.iter().copied().filter(|it| !QUALIFIERS.iter().any(|of| it.eq_ignore_ascii_case(of)));
+    let ty = plain.next_back();
     ty.and_then(type_of_ours).or(ty).unwrap_or("INT")
 }
 
