@@ -19,10 +19,10 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) {
     join_functions(files, &paths);
     let folders: Vec<&'s str> = paths.iter().map(|it| folder_of(it)).collect();
     let mut programs: FxHashMap<&'s str, usize> = FxHashMap::default();
-    for at in 0..files.len() {
-        let has_part = files[at].items.iter().any(|it| part_of(it).is_some());
-        let Some(folder) = folders.get(at).filter(|_| has_part) else { continue };
-        programs.entry(folder).or_insert(at);
+    for ((at, file), folder) in files.iter().enumerate().zip(&folders) {
+        if file.items.iter().any(|it| part_of(it).is_some()) {
+            programs.entry(folder).or_insert(at);
+        }
     }
     for (folder, first) in programs {
         let mut parts: Vec<Pou<'s>> = Vec::new();

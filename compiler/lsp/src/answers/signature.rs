@@ -102,5 +102,6 @@ pub fn help(analysis: &Analysis, place: Place) -> Option<SignatureHelp> {
             }
         })
         .collect();
-    (!signatures.is_empty()).then(|| SignatureHelp { signatures, active_signature: Some(0), active_parameter: None })
+    let is_known = !signatures.is_empty();
+    is_known.then_some(SignatureHelp { signatures, active_signature: Some(0), active_parameter: None })
 }

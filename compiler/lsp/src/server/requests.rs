@@ -25,9 +25,9 @@ impl Server<'_> {
     pub(super) fn answer(&mut self, method: LspRequestMethod<'_>, params: Json) -> Answer {
         use LspRequestMethod as Method;
         match method {
-            Method::TextDocumentHover => self.at(params, |it, place| navigate::hover(it, place)),
-            Method::TextDocumentDefinition => self.at(params, |it, place| navigate::definition(it, place)),
-            Method::TextDocumentTypeDefinition => self.at(params, |it, place| navigate::type_definition(it, place)),
+            Method::TextDocumentHover => self.at(params, navigate::hover),
+            Method::TextDocumentDefinition => self.at(params, navigate::definition),
+            Method::TextDocumentTypeDefinition => self.at(params, navigate::type_definition),
             Method::TextDocumentImplementation => {
                 self.at(params, |it, place| Some(navigate::implementations(it, place)))
             }
@@ -36,7 +36,7 @@ impl Server<'_> {
                 self.at(params, |it, place| Some(navigate::references(it, place, with_declaration)))
             }
             Method::TextDocumentDocumentHighlight => self.at(params, |it, place| Some(navigate::highlights(it, place))),
-            Method::TextDocumentSignatureHelp => self.at(params, |it, place| signature::help(it, place)),
+            Method::TextDocumentSignatureHelp => self.at(params, signature::help),
             Method::TextDocumentPrepareCallHierarchy => {
                 self.at(params, |it, place| hierarchy::prepare_calls(it, place).map(|it| vec![it]))
             }
