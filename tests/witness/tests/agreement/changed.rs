@@ -40,9 +40,7 @@ fn changed_cases() {
 
 /// Whether a case has a run, and is not a vendor's file.
 fn is_text(case: &Case) -> bool {
-    // The witness knows the pools that pragmas give, and none of a setting.
-    let has_pools_by_setting = case.name == "objects/pool_by_setting";
-    case.pins.contains(&Pin::Scan) && !case.name.starts_with("vendor/") && !has_pools_by_setting
+    case.pins.contains(&Pin::Scan) && !case.name.starts_with("vendor/")
 }
 
 /// How many are the same, are not compared, and differ.
