@@ -23,6 +23,8 @@ pub(crate) struct Pou<'a> {
     pub implements: Vec<usize>,
     /// Whether it has the attribute `call_after_init`.
     pub after_init: bool,
+    /// Whether it has the attribute `startup`.
+    pub starts_up: bool,
     /// How many variables its instances keep.
     pub fields: usize,
     pub result: Option<Slot<'a>>,
@@ -125,6 +127,7 @@ impl<'a> Declarations<'a> {
             return unknown("a sequential function chart");
         }
         let (base, implements) = self.bases(pou)?;
+        let starts_up = pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("startup"));
         let after_init = pou.attributes.iter().any(|it| it.eq_ignore_ascii_case("call_after_init"));
         if kind == PouKind::Interface {
             let (base, result, variables) = (None, None, Vec::new());
@@ -137,6 +140,7 @@ impl<'a> Declarations<'a> {
                 implements,
                 fields: 0,
                 after_init,
+                starts_up,
                 result,
                 variables,
                 body,
@@ -150,7 +154,20 @@ impl<'a> Declarations<'a> {
             .map(|it| 1 + usize::from(it.is_edge))
             .sum();
         let result = pou.result.as_ref().map(|it| self.slot(it, None)).transpose()?;
-        self.pous.push(Pou { name, key, kind, owner, base, implements, fields, after_init, result, variables, body });
+        self.pous.push(Pou {
+            name,
+            key,
+            kind,
+            owner,
+            base,
+            implements,
+            fields,
+            after_init,
+            starts_up,
+            result,
+            variables,
+            body,
+        });
         Ok(())
     }
 

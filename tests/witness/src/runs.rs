@@ -14,6 +14,8 @@ pub(crate) struct Run<'a> {
     /// What a CONFIGURATION connects it with.
     connections: &'a [Argument<'a>],
     task: Task<'a>,
+    /// Whether it has run since the start.
+    has_run: bool,
     /// Whether it runs by itself, and not only where others call it.
     pub runs: bool,
 }
@@ -78,7 +80,7 @@ impl<'a> Machine<'a> {
         let ty = self.declared.instance_of(pou)?;
         let place = self.allocate(&ty);
         self.start(&Frame::default(), &place, None)?;
-        self.runs.push(Run { name, pou, place: place.clone(), connections, task, runs });
+        self.runs.push(Run { name, pou, place: place.clone(), connections, task, has_run: false, runs });
         Ok(place)
     }
 
@@ -88,6 +90,11 @@ impl<'a> Machine<'a> {
             return unknown("this run");
         };
         if !self.is_due(at)? {
+            return Ok(());
+        }
+        // `{attribute 'startup'}`: once after each start.
+        let has_run = std::mem::replace(&mut self.runs[at].has_run, true);
+        if has_run && self.declared.pous[self.runs[at].pou].starts_up {
             return Ok(());
         }
         let Run { pou, place, connections, .. } = self.runs[at].clone();

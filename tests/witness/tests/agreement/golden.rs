@@ -58,6 +58,9 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     if settings.options.codesys_lreal_literals {
         return Ok(Verdict::Rejected("a number that is an LREAL next to a REAL".to_owned()));
     }
+    if settings.options.default_pool.is_some() {
+        return Ok(Verdict::Rejected("a pool that a setting gives".to_owned()));
+    }
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
     let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "MID(", "DELETE(", "INSERT(", "LIMIT("];
     if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
