@@ -278,6 +278,11 @@ impl<'a> Declarations<'a> {
                 if declared.iter().any(|it| it.known_address().is_some()) {
                     return unknown("the location of a member");
                 }
+                let is_bit =
+                    |it: &ast::VarDecl<'_>| matches!(path_of(&it.ty), [it] if it.text.eq_ignore_ascii_case("BIT"));
+                if declared.iter().any(is_bit) {
+                    return unknown("a BIT in a UNION");
+                }
                 let shared =
                     Type::Union(Rc::new(Record { pou: None, fields: self.fields(declared)?, edges: Vec::new() }));
                 if shared.bytes().is_none() {
@@ -344,6 +349,8 @@ impl<'a> Declarations<'a> {
             (_, Some((_, Declared::Pou(number, pou)))) => slot(self.instance(pou, number)?),
             ([name], _) => match Elementary::named(name.text) {
                 Some(it) => slot(Type::Elementary(it)),
+                // CODESYS: a BOOL, whichever bit of a byte it has.
+                None if name.text.eq_ignore_ascii_case("BIT") => slot(Type::BOOL),
                 None => slot(Type::Block(self.block(name.text)?)),
             },
             ([library, name], _) => match library_of(library.text) {

@@ -5,7 +5,7 @@ use crate::dates::unit;
 use crate::expressions::{Untyped, default_type, in_repr, literal_number, untyped};
 use crate::machine::{Frame, Machine, Outcome, Stop, unknown};
 use crate::operators::{kept_of, operator};
-use crate::storage::{Value, integer_cell};
+use crate::storage::{Cell, Value, integer_cell};
 use crate::types::{Elementary, Type};
 use staunch_frontend::Span;
 use staunch_frontend::ast::{Argument, ArgumentKind, BinaryOp, Expr, ExprKind, Name};
@@ -35,6 +35,17 @@ impl<'a> Machine<'a> {
         }
         match upper.as_str() {
             "MOVE" => self.value(frame, self.only(arguments)?, asked),
+            "TO_LITTLE_ENDIAN" | "FROM_LITTLE_ENDIAN" | "LITTLE_ENDIAN_TO" => {
+                self.value(frame, self.only(arguments)?, asked)
+            }
+            "TO_BIG_ENDIAN" | "FROM_BIG_ENDIAN" | "BIG_ENDIAN_TO" => {
+                let argument = self.only(arguments)?;
+                let is_place = matches!(argument.kind, ExprKind::Name(_) | ExprKind::Member(..) | ExprKind::Index(..));
+                if self.declared.family == Family::Codesys && !is_place {
+                    return unknown("how many bytes a sum has");
+                }
+                turned(self.value(frame, argument, asked)?)
+            }
             "NOT" => {
                 let value = self.value(frame, self.only(arguments)?, asked)?;
                 self.of_one("NOT", &value, at)
@@ -577,4 +588,22 @@ pub(crate) fn positions<'a>(names: &[&str], arguments: &'a [Argument<'a>]) -> Ou
         given.push((position, expr));
     }
     Ok(given)
+}
+
+/// With the bytes of each number in the other order; a text stays as it is.
+fn turned(mut value: Value<'_>) -> Outcome<Value<'_>> {
+    for cell in &mut value.cells {
+        match cell {
+            Cell::Scalar(number) => {
+                let mut bytes = [0; 8];
+                let size = usize::try_from(number.repr().size()).unwrap_or(8);
+                number.write(&mut bytes[..size]);
+                bytes[..size].reverse();
+                *number = Scalar::read(number.repr(), &bytes[..size]);
+            }
+            Cell::Text(_) => {}
+            _ => return unknown("the bytes of this"),
+        }
+    }
+    Ok(value)
 }

@@ -58,9 +58,6 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     if settings.options.codesys_lreal_literals {
         return Ok(Verdict::Rejected("a number that is an LREAL next to a REAL".to_owned()));
     }
-    if settings.options.default_pool.is_some() {
-        return Ok(Verdict::Rejected("a pool that a setting gives".to_owned()));
-    }
     let has = |what: &str| sources.files().iter().any(|it| it.text.contains(what));
     let own = ["**", "_TO_STRING", "STRING_TO_ULINT", "MID(", "DELETE(", "INSERT(", "LIMIT("];
     if settings.options.dialect == Dialect::Siemens && own.iter().any(|it| has(it)) {
@@ -77,7 +74,10 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
     // The witness has no prescan of Logix: programs with its counters start without one.
     let is_logix = family == Family::Logix || sources.files().iter().any(|it| it.text.contains("LOGIX."));
     let events = recorded(&program, &table, &settings, !is_logix, &case.module())?;
-    let files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(sources, at)).collect();
+    let mut files: Vec<ast::File<'_>> = (0..).zip(sources.files()).map(|(at, _)| parse_file(sources, at)).collect();
+    if let Some(count) = settings.options.default_pool {
+        give_pools(&mut files, count);
+    }
     let running: Vec<&str> = program.instances.iter().map(|it| it.name.as_str()).collect();
     let start = || Machine::new(sources, &files, family, &running);
     Ok(replayed(&start, events).unwrap_or_else(|stop| match stop {
@@ -85,6 +85,23 @@ pub fn compare(case: &Case, sources: &Sources) -> Result<Verdict, String> {
         Stop::Unknown(what) => Verdict::Rejected(what),
         Stop::Fault(fault) => Verdict::Differs(format!("the witness faults at the start: {fault}")),
     }))
+}
+
+/// `[pool] default`: every type without a pool has one. Of those that `__NEW` does not name nothing is seen.
+fn give_pools(files: &mut [ast::File<'_>], count: u32) {
+    for item in files.iter_mut().flat_map(|it| &mut it.items) {
+        match item {
+            ast::Item::Pou(pou) if pou.kind.is_block() && pou.modifiers.is_abstract.is_none() => {
+                pou.pool.get_or_insert(ast::Pool { count: Some(count), span: pou.name.span });
+            }
+            ast::Item::Types(declared) => {
+                for it in declared.iter_mut().filter(|it| matches!(it.ty.kind, ast::TypeKind::Struct(_))) {
+                    it.pool.get_or_insert(ast::Pool { count: Some(count), span: it.name.span });
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 fn replayed<'a>(start: &dyn Fn() -> Result<Machine<'a>, Stop>, events: Vec<Event>) -> Result<Verdict, Stop> {
