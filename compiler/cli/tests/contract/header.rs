@@ -71,7 +71,7 @@ int main(void) {
         }
     }
     for (int scan = 0; scan < 3; scan++) {
-        staunch_context cx = {scan * 10000000LL, scan == 0, STAUNCH_TURNS, 10000000LL};
+        staunch_context cx = {.now = scan * 10000000LL, .first_scan = scan == 0, .turns = STAUNCH_TURNS, .cycle = 10000000LL};
         if (plant_scan(bytes, &cx, PLANT_LINE) != 0) {
             return 1;
         }
@@ -97,7 +97,9 @@ static pump_state state;
 extern "C" int other(uint8_t *plant) {
     uint8_t *bytes = reinterpret_cast<uint8_t *>(&state);
     pump_init(bytes);
-    staunch_context cx = {0, true, STAUNCH_TURNS, 0};
+    staunch_context cx = {};
+    cx.first_scan = true;
+    cx.turns = STAUNCH_TURNS;
     bool right = pump_scan(bytes, &cx, PUMP_MAIN) == 0 && state.Main.motors.t.PT == 7;
     return right && reinterpret_cast<plant_state *>(plant)->Line.rec.a == 0 ? 0 : 2;
 }
