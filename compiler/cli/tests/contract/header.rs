@@ -138,6 +138,50 @@ fn a_host_in_c_has_two_programs() {
     assert_eq!(ran, format!("{table}1 1 1 2.5 five 0\n12 1 15\n"));
 }
 
+/// A host in C, with bytes behind the context that a scan must not touch.
+const COUNTS: &str = r#"
+#include <stdio.h>
+#include "plant.h"
+
+static struct staunch_state state;
+static struct { staunch_context cx; uint8_t after[32]; } told;
+
+int main(void) {
+    staunch_init((uint8_t *)&state);
+    for (int scan = 0; scan < 2; scan++) {
+        told.cx = (staunch_context){.now = scan * 10000000LL, .first_scan = scan == 0, .turns = STAUNCH_TURNS};
+        if (staunch_scan((uint8_t *)&state, &told.cx, STAUNCH_MAIN) != 0) {
+            return 1;
+        }
+        staunch_minor_faults minor = told.cx.minor_faults;
+        printf("%d %d:%d\n", (int)minor.count, (int)minor.line, (int)minor.column);
+    }
+    for (int at = 0; at < 32; at++) {
+        if (told.after[at] != 0) {
+            return 2;
+        }
+    }
+    return 0;
+}
+"#;
+
+/// What divides by zero and continues tells it in the host's context, and nowhere else.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_host_in_c_is_told_of_minor_faults() {
+    let program = "PROGRAM Main\nVAR a, b : DINT; END_VAR\nb := 7 / a;\nb := b MOD a;\na := a + 1;\nEND_PROGRAM\n";
+    let folder = Folder::with("header_minor", &[("plant.st", program), ("host.c", COUNTS)]);
+    folder.staunch("build plant.st --dialect logix --emit header -o plant.h -q").out(0);
+    for backend in ["native", "rust"] {
+        folder
+            .staunch(&format!("build plant.st --dialect logix --backend {backend} --emit lib -o libplant.a -q"))
+            .out(0);
+        compiled(&folder, "cc", "-std=c11 host.c libplant.a -lm -lpthread -ldl -o host");
+        let ran = Ran::of(Command::new(folder.0.join("host")).current_dir(&folder.0).output().unwrap()).out(0);
+        assert_eq!(ran, "2 3:6\n0 0:0\n", "{backend}");
+    }
+}
+
 /// A prefix is for what is linked with others, and a name of C.
 #[test]
 fn a_prefix_is_refused_where_nothing_has_it() {
