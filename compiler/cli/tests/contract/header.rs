@@ -178,7 +178,7 @@ fn a_host_in_c_is_told_of_minor_faults() {
             .out(0);
         compiled(&folder, "cc", "-std=c11 host.c libplant.a -lm -lpthread -ldl -o host");
         let ran = Ran::of(Command::new(folder.0.join("host")).current_dir(&folder.0).output().unwrap()).out(0);
-        assert_eq!(ran, "2 3:6\n0 0:0\n", "{backend}");
+        assert_eq!(ran, "2 3:8\n0 0:0\n", "{backend}");
     }
 }
 

@@ -44,7 +44,7 @@ pub fn write(folder: &Path) -> Result<String, String> {
         modules.push(printed.module);
     }
     let names = || modules.iter().map(String::as_str);
-    for (kind, text) in [("rust", entries(names(), "..", "super::drive")), ("native", symbols(modules.len()))] {
+    for (kind, text) in [("rust", entries(names(), folder, "super::drive")?), ("native", symbols(modules.len()))] {
         let kind = folder.join(kind);
         fs::create_dir_all(&kind).map_err(|it| it.to_string())?;
         put(&kind.join("entries.rs"), text)?;

@@ -45,6 +45,6 @@ fn batch(folder: &Path, name: &str, modules: &[String], more: &str) -> Result<()
     fs::create_dir_all(&batch).map_err(|it| it.to_string())?;
     let main = fs::read_to_string(tests().join("proofs/linked.rs")).map_err(|it| it.to_string())?;
     put(&batch.join("main.rs"), main)?;
-    put(&batch.join("entries.rs"), entries(modules.iter().map(String::as_str), "..", "super"))?;
+    put(&batch.join("entries.rs"), entries(modules.iter().map(String::as_str), folder, "super")?)?;
     put(&batch.join("more.rs"), more)
 }

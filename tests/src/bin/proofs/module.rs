@@ -46,8 +46,14 @@ pub fn program(case: &Case) -> Option<Program> {
     staunch_frontend::compile(&case.sources(), &options).program
 }
 
-/// A file of modules, and their entry points in a list. `shared` is the path of `Entry`.
-pub fn entries<'a>(modules: impl Iterator<Item = &'a str> + Clone, folder: &str, shared: &str) -> String {
+/// A file of modules in a folder, and their entry points in a list. `shared` is the path of `Entry`.
+pub fn entries<'a>(
+    modules: impl Iterator<Item = &'a str> + Clone,
+    folder: &Path,
+    shared: &str,
+) -> Result<String, String> {
+    let folder = fs::canonicalize(folder).map_err(|it| it.to_string())?;
+    let folder = folder.display();
     let module = |it: &str| {
         format!(
             "mod {it} {{\n    #[path = \"{folder}/{it}/code.rs\"]\n    pub mod code;\n    \
@@ -56,7 +62,7 @@ pub fn entries<'a>(modules: impl Iterator<Item = &'a str> + Clone, folder: &str,
     };
     let entry = |it: &str| format!("    Entry {{ init: {it}::glue::staunch_init, scan: {it}::glue::staunch_scan }},\n");
     let (modules, entries): (String, String) = (modules.clone().map(module).collect(), modules.map(entry).collect());
-    format!("//! Programs.\n\nuse {shared}::Entry;\n\n{modules}\npub const ENTRIES: &[Entry] = &[\n{entries}];\n")
+    Ok(format!("//! Programs.\n\nuse {shared}::Entry;\n\n{modules}\npub const ENTRIES: &[Entry] = &[\n{entries}];\n"))
 }
 
 pub fn put(path: &Path, text: impl AsRef<[u8]>) -> Result<(), String> {
