@@ -1,5 +1,4 @@
 //! What a text is held to: the compiler does not panic, what it accepts every back end takes, and the interpreter and native code agree.
-#![allow(clippy::unwrap_used, reason = "a fuzzer finds panics")]
 
 use staunch_frontend::{Dialect, Options, Source, Sources, Style, compile, render};
 use staunch_ir::interpret::{Interpreter, Stop};
@@ -31,7 +30,7 @@ pub fn held(name: &str, bytes: &[u8], dialect: Dialect) {
     }
     assert_eq!(compilation.has_errors(), compilation.program.is_none());
     if let Some(program) = &compilation.program {
-        verify::verify(program).unwrap();
+        assert!(verify::verify(program).is_ok(), "the program does not verify");
         runs_alike(program);
     }
 }
@@ -42,9 +41,9 @@ fn runs_alike(program: &Program) {
         return;
     }
     staunch_rust::emit(program, &staunch_rust::Options::default());
-    object(program, &Target::host().unwrap()).unwrap();
-    let jit = Jit::new(program).unwrap();
-    let map = staunch_host::Map::parse(&map_text(program, &layout)).unwrap();
+    object(program, &Target::host().expect("a machine with native code")).expect("verified IR");
+    let jit = Jit::new(program).expect("verified IR");
+    let map = staunch_host::Map::parse(&map_text(program, &layout)).expect("the compiler's own map");
     // SAFETY: the code was made of this program, and lives longer than the machine.
     let mut native = unsafe { staunch_host::Compiled::new(&map, jit.init, jit.scan) };
     let mut interpreter = Interpreter::new(program);

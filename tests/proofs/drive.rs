@@ -47,7 +47,7 @@ pub fn all(entries: &[Entry], out: &mut dyn Write) -> usize {
     let mut record = Record(include_bytes!("record"));
     let (mut scans, mut wrong) = (0, 0);
     for entry in entries {
-        let name = core::str::from_utf8(record.bytes()).unwrap();
+        let name = core::str::from_utf8(record.bytes()).unwrap_or_default();
         let mut drive = Record(record.bytes());
         match one(entry, &mut drive, &mut scans) {
             Ok(()) => {}
