@@ -90,7 +90,7 @@ mod tests {
         // So large that there are the fewest slots.
         let state = vec![7; BYTES];
         let ring = Ring::new(&state);
-        let parts = [2..4];
+        let parts = [2..3, 3..4];
         let give = |scan: u64| ring.give(|it| it.fill((scan, 10), true, &vec![9; BYTES], &parts));
         assert!((1..=16).all(give) && !give(17));
         let mut scans = Vec::new();
@@ -118,7 +118,7 @@ mod tests {
                 sum
             });
             for scan in 1..=most {
-                let give = || ring.give(|it| it.fill((scan, 0), true, &scan.to_le_bytes(), &[0..8]));
+                let give = || ring.give(|it| it.fill((scan, 0), true, &scan.to_le_bytes(), &[0..4, 4..8]));
                 // The last one must arrive.
                 while !give() {
                     if scan < most {
