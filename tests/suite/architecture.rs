@@ -78,6 +78,10 @@ const UNSAFE: &[&str] = &[
     "compiler/rust/tests/",
     "tests/src/generated.rs",
     "tests/src/execute.rs",
+    // What `.ci/proofs` links and runs on other machines.
+    "tests/proofs/",
+    "tests/fuzz/",
+    "tests/src/bin/proofs/",
     // The test that forks, of a copy with mutants.
     "tests/mutants/ask.rs",
 ];

@@ -6,7 +6,7 @@ use core::cell::Cell;
 
 /// What a scan knows about the world: the runtime has no clock of its own.
 ///
-/// Native code reads this struct by offset, so its layout is part of the ABI.
+/// Native code reads this struct by offset, and hosts in C allocate it, so its layout is part of the ABI.
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Context {
@@ -17,8 +17,34 @@ pub struct Context {
     turns: Cell<u64>,
     /// Nanoseconds from one scan of this program to the next, as its host places them; 0 where the host does not say.
     pub cycle: Time,
-    minor_faults: Cell<MinorFaults>,
+    minor_faults: Cell<Noted>,
 }
+
+/// As C has it: the place is that of the first, where there is one.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Noted {
+    count: u64,
+    line: u32,
+    column: u16,
+    file: u16,
+}
+
+impl Noted {
+    const NONE: Self = Self { count: 0, line: 0, column: 0, file: 0 };
+
+    fn and(self, at: Location) -> Self {
+        let count = self.count.saturating_add(1);
+        match self.count {
+            0 => Self { count, line: at.line, column: at.column, file: at.file },
+            _ => Self { count, ..self },
+        }
+    }
+}
+
+// What C allocates for it, where numbers of 64 bits are aligned to their size.
+const _: () =
+    assert!(align_of::<u64>() < 8 || size_of::<Context>() == 48 && core::mem::offset_of!(Context, minor_faults) == 32);
 
 /// Divisions by zero after which the program continues, as Logix has them (a minor fault of type 4, code 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -28,8 +54,6 @@ pub struct MinorFaults {
 }
 
 impl MinorFaults {
-    const NONE: Self = Self { count: 0, first: None };
-
     /// Those before, and those of a later scan.
     #[must_use]
     pub fn and(self, later: Self) -> Self {
@@ -55,7 +79,7 @@ impl Context {
             first_scan,
             turns: Cell::new(Self::TURNS),
             cycle: 0,
-            minor_faults: Cell::new(MinorFaults::NONE),
+            minor_faults: Cell::new(Noted::NONE),
         }
     }
 
@@ -102,12 +126,13 @@ impl Context {
 
     /// Notes a fault after which the program continues.
     pub fn report_minor_fault(&self, at: Location) {
-        self.minor_faults.set(self.minor_faults.get().and(MinorFaults { count: 1, first: Some(at) }));
+        self.minor_faults.set(self.minor_faults.get().and(at));
     }
 
     /// The minor faults of this scan.
     pub fn minor_faults(&self) -> MinorFaults {
-        self.minor_faults.get()
+        let Noted { count, line, column, file } = self.minor_faults.get();
+        MinorFaults { count, first: (count > 0).then_some(Location { file, column, line }) }
     }
 
     #[inline]

@@ -83,20 +83,18 @@ macro_rules! reprs {
             }
 
             /// Reads a value of `repr` from the start of `bytes`, in the machine's byte order.
-            ///
-            /// # Panics
-            /// If `bytes` is shorter than the repr.
+            /// Zero where there are too few, which is a mistake of the caller's.
             pub fn read(repr: Repr, bytes: &[u8]) -> Self {
+                debug_assert!(bytes.len() >= repr.size() as usize);
                 match repr {
                     $(repr_arm!(@pat $repr) => repr_arm!(@read $rust $repr bytes),)*
                 }
             }
 
             /// Writes the value to the start of `bytes`, in the machine's byte order.
-            ///
-            /// # Panics
-            /// If `bytes` is shorter than the value.
+            /// Nothing where there are too few, which is a mistake of the caller's.
             pub fn write(self, bytes: &mut [u8]) {
+                debug_assert!(bytes.len() >= self.repr().size() as usize);
                 match self {
                     $(repr_arm!(@bind $repr it) => repr_arm!(@write $rust it bytes),)*
                 }
@@ -135,18 +133,16 @@ macro_rules! repr_arm {
         Self::$repr($it)
     };
     (@read bool $repr:ident $bytes:ident) => {
-        Self::Bool($bytes[0] != 0)
+        Self::Bool($bytes.first().is_some_and(|it| *it != 0))
     };
-    (@read $rust:ident $repr:ident $bytes:ident) => {{
-        let mut raw = [0; size_of::<$rust>()];
-        raw.copy_from_slice(&$bytes[..size_of::<$rust>()]);
-        Self::$repr($rust::from_ne_bytes(raw))
-    }};
+    (@read $rust:ident $repr:ident $bytes:ident) => {
+        Self::$repr($bytes.first_chunk().map_or($rust::ZERO, |it| $rust::from_ne_bytes(*it)))
+    };
     (@write bool $it:ident $bytes:ident) => {
-        $bytes[0] = u8::from($it)
+        $bytes.iter_mut().take(1).for_each(|it| *it = $it.into())
     };
     (@write $rust:ident $it:ident $bytes:ident) => {
-        $bytes[..size_of::<$rust>()].copy_from_slice(&$it.to_ne_bytes())
+        $bytes.first_chunk_mut().into_iter().for_each(|it| *it = $it.to_ne_bytes())
     };
 }
 

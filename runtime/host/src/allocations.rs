@@ -26,6 +26,11 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
+/// How often this thread has allocated until now.
+pub fn allocated() -> usize {
+    COUNT.get()
+}
+
 /// How often this thread allocates in the course of something.
 pub fn allocations(what: impl FnOnce()) -> usize {
     let before = COUNT.get();

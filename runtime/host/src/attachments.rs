@@ -92,3 +92,24 @@ impl Attachments {
         self.0.iter_mut().for_each(|it| it.end(ended));
     }
 }
+
+/// What fuzzers hold a Modbus server to: each request has an answer of its function, that fits into a frame; and a frame ends where it is whole.
+#[cfg(fuzzing)]
+pub(crate) fn answered(map: &Map, bytes: &[u8]) {
+    let points = Points::of(map);
+    let exchange = exchange::Exchange::new(points.all.len());
+    let mut registers = registers::Registers::new(&points.all);
+    let mut rest = bytes;
+    while let Some((length, after)) = rest.split_first() {
+        let (request, after) = after.split_at(usize::from(*length).min(after.len()));
+        rest = after;
+        let mut answer = Vec::new();
+        registers.update(&exchange);
+        pdu::answer(request, &mut registers, &mut answer);
+        registers.hand_over(&exchange);
+        let function = request.first().copied().unwrap_or(0);
+        assert!(answer.len() <= 253 && (answer[0] == function || answer[0] == function | 0x80));
+        let end = line::first_whole(request);
+        assert!(end.is_none_or(|it| line::is_whole(&request[..it])));
+    }
+}

@@ -4,6 +4,7 @@
 //! It depends on the runtime alone: the command carries its source, to build executables where
 //! no package registry can be reached.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
+#![allow(unexpected_cfgs, reason = "cargo-fuzz sets `fuzzing`")]
 
 mod error;
 mod pin;
@@ -49,6 +50,8 @@ mod terminal;
 mod allocations;
 #[cfg(test)]
 mod fixture;
+#[cfg(fuzzing)]
+pub mod fuzzing;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
 pub use attachments::{

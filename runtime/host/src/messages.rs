@@ -1,11 +1,17 @@
 //! What a program logs, as by `ADSLOGSTR`: the compiler keeps the last messages in variables, which are read after each
 //! scan.
 
+use crate::error::tell;
 use crate::json::quote;
 use crate::map::Map;
+use crate::run::Options;
 use crate::value::value_at;
+use crate::{Error, path};
+use std::ops::Range;
 
 const COUNT: &str = "Globals.__AdsLogCount";
+const MASKS: &str = "Globals.__AdsLogMasks";
+const TEXTS: &str = "Globals.__AdsLogTexts";
 /// How many messages are kept.
 const KEPT: u32 = 16;
 /// Bits of a mask, and what they say of a message.
@@ -27,6 +33,17 @@ impl Message {
     pub fn line(&self, scan: u64) -> String {
         format!("log, scan {scan}: {}: {}", self.kind, self.text)
     }
+
+    /// On standard error, or as JSON.
+    pub fn tell(&self, scan: u64, options: &Options) -> Result<(), Error> {
+        if options.json {
+            return options.print_json(&self.json(scan));
+        }
+        if !options.quiet {
+            tell(self.line(scan));
+        }
+        Ok(())
+    }
 }
 
 /// The messages of a program that have been told.
@@ -38,8 +55,15 @@ pub(crate) struct Messages {
 
 impl Messages {
     pub fn of(map: &Map) -> Self {
-        let is_there = crate::path::resolve(map, &[], COUNT).is_ok();
+        let is_there = path::resolve(map, &[], COUNT).is_ok();
         Self { is_there, told: 0 }
+    }
+
+    /// Where the state has them, first how many there were; nothing in a program that logs nothing.
+    pub fn places(map: &Map) -> Vec<Range<usize>> {
+        let places = [COUNT, MASKS, TEXTS].map(|it| path::resolve(map, &[], it));
+        let place = |it: path::Place| it.offset..it.offset + map.size_of(it.ty);
+        places.into_iter().filter_map(Result::ok).map(place).collect()
     }
 
     /// Those since the last call, in their order.
@@ -58,9 +82,9 @@ impl Messages {
         }
         for number in count - fresh.min(KEPT)..count {
             let place = number % KEPT;
-            let mask: u32 = value(&format!("Globals.__AdsLogMasks[{place}]")).parse().unwrap_or(0);
+            let mask: u32 = value(&format!("{MASKS}[{place}]")).parse().unwrap_or(0);
             let kind = KINDS.iter().find(|it| mask & it.0 != 0).map_or("message", |it| it.1);
-            messages.push(Message { kind, text: value(&format!("Globals.__AdsLogTexts[{place}]")) });
+            messages.push(Message { kind, text: value(&format!("{TEXTS}[{place}]")) });
         }
         messages
     }

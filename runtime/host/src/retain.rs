@@ -315,5 +315,15 @@ fn brief(text: &str) -> &str {
     }
 }
 
+/// What fuzzers hold it to: any bytes are a content or refused, and what was recovered has the right sizes.
+#[cfg(fuzzing)]
+pub(crate) fn recovered(bytes: &[u8]) {
+    if let Ok(content) = format::recover(&format::with_checksums(bytes)) {
+        let sizes = content.variables.iter().filter_map(|it| it.2.as_ref()).map(Vec::len).sum::<usize>();
+        assert!(content.found.is_none_or(|it| it.values.len() == sizes));
+    }
+    let _ = format::recover(bytes);
+}
+
 #[cfg(test)]
 mod tests;

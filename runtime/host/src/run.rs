@@ -1,10 +1,14 @@
 //! A run: scan after scan, with what goes in and what comes out.
 
+mod aside;
 mod options;
+mod ring;
 mod summary;
 
 pub use options::{Moment, Options};
 pub use summary::Summary;
+
+use aside::Aside;
 
 use crate::attachments::{Attachments, Ended};
 use crate::column::{columns, overlays};
@@ -16,7 +20,7 @@ use crate::realtime::{RealTime, Scanned};
 use crate::retain::{Ending, Pace, Retention};
 use crate::schedule::{Due, Schedule};
 use crate::start::{Event, Start};
-use crate::stimulus::{Stimulus, Write};
+use crate::stimulus::Stimulus;
 use crate::trace::{self, Row, Subject, Table, Trace};
 use crate::{Error, Machine, terminal};
 use staunch_runtime::{Context, MinorFaults, Time};
@@ -55,20 +59,22 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     };
     let overlays = overlays.map_err(|it| Error::Usage(format!("--overlay: {it}")))?;
     let subject = Subject { map, columns, overlays, title: title(map, &running), cycle: schedule.shortest_period() };
+    let stimulus = stimulus.unwrap_or_default();
+    let held = Vec::with_capacity(stimulus.columns);
     let mut runner = Runner {
         machine,
         map,
         options,
         schedule,
-        stimulus: stimulus.unwrap_or_default(),
+        stimulus,
         next_row: 0,
-        held: Vec::new(),
+        held,
         fresh: vec![true; map.instances.len()],
         retention: None,
         start: Start::of(map),
         messages: Messages::of(map),
         epoch: 0,
-        out: Output { rows: 0, lost: 0, trace: None, table: Table::new(&subject, terminal::width()) },
+        out: Output { rows: 0, lost: 0, trace: None, aside: None, table: Table::new(&subject, terminal::width()) },
         real: None,
         attachments: None,
         alone: None,
@@ -76,9 +82,8 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         minor_faults: MinorFaults::default(),
     };
     runner.start()?;
-    if let Some(path) = &options.trace {
-        let trace = Trace::create(path, &subject, options.realtime);
-        runner.out.trace = runner.needed(trace)?;
+    if let Some(path) = options.trace.as_ref().filter(|_| !options.realtime) {
+        runner.out.trace = Some(Trace::create(path, &subject, false)?);
     }
     let ran = runner.scans(&subject);
     let finished = runner.finish(&subject, &ran);
@@ -136,8 +141,8 @@ struct Runner<'a> {
     stimulus: Stimulus,
     /// The next row of the stimulus.
     next_row: usize,
-    /// What the stimulus wrote to inputs: they hold over a restart.
-    held: Vec<Write>,
+    /// What the stimulus wrote to inputs, by row and place in it: they hold over a restart.
+    held: Vec<(usize, usize)>,
     /// Instances that have not run since the start.
     fresh: Vec<bool>,
     retention: Option<Retention>,
@@ -160,7 +165,10 @@ struct Output {
     rows: u64,
     /// Of these, how many a trace that cannot be written lacks.
     lost: u64,
+    /// On the virtual clock.
     trace: Option<Trace>,
+    /// In real time, the trace and what the program logs.
+    aside: Option<Aside>,
     table: Table,
 }
 
@@ -188,6 +196,7 @@ impl Runner<'_> {
             }
             // Before a priority is taken: their threads are to have none.
             self.attach()?;
+            self.out.aside = Aside::start(subject, self.options, self.machine.state())?;
             let line = if self.options.json { summary::figures_json } else { summary::figures_text };
             self.real = Some(RealTime::start(self.map, &self.schedule, &self.options.pacing, line)?);
         }
@@ -381,18 +390,11 @@ impl Runner<'_> {
 
     /// Says on standard error, or as JSON, what the program has logged.
     fn tell(&mut self, scan: u64) -> Result<(), Error> {
-        for message in self.messages.take(self.map, self.machine.state()) {
-            if self.options.json {
-                let printed = self.options.print_json(&message.json(scan));
-                // In real time, users who do not read objects get a warning at the end.
-                if !self.options.realtime {
-                    printed?
-                }
-            } else if !self.options.quiet {
-                crate::error::tell(message.line(scan));
-            }
+        if self.real.is_some() {
+            self.out.aside.iter_mut().for_each(|it| it.messages(scan, self.machine.state()));
+            return Ok(());
         }
-        Ok(())
+        self.messages.take(self.map, self.machine.state()).iter().try_for_each(|it| it.tell(scan, self.options))
     }
 
     /// Events and values that come before scan `number`.
@@ -401,12 +403,12 @@ impl Runner<'_> {
             if let Some(event) = self.stimulus.rows[self.next_row].event {
                 self.start_again(event)?;
             }
-            for write in &self.stimulus.rows[self.next_row].writes {
-                let bytes = write.over(self.machine.state()).into_owned();
-                self.machine.write(write.offset, &bytes);
+            for (at, write) in self.stimulus.rows[self.next_row].writes.iter().enumerate() {
+                write.put(self.machine);
                 if write.input {
-                    self.held.retain(|it| !it.replaces(write));
-                    self.held.push(write.clone());
+                    let rows = &self.stimulus.rows;
+                    self.held.retain(|(row, at)| !rows[*row].writes[*at].replaces(write));
+                    self.held.push((self.next_row, at));
                 }
             }
             self.next_row += 1;
@@ -429,9 +431,8 @@ impl Runner<'_> {
 
     /// Inputs are as the stimulus has them.
     fn hold(&mut self) {
-        for it in &self.held {
-            let bytes = it.over(self.machine.state()).into_owned();
-            self.machine.write(it.offset, &bytes);
+        for (row, at) in &self.held {
+            self.stimulus.rows[*row].writes[*at].put(self.machine);
         }
     }
 
@@ -448,27 +449,15 @@ impl Runner<'_> {
         }
         self.out.rows += 1;
         let row = Row { scan: self.summary.scans, time: now, state: self.machine.state() };
-        match &mut self.out.trace {
-            Some(trace) if self.options.realtime => {
-                let written = trace.row(subject, row).and_then(|()| trace.flush());
-                if self.needed(written)?.is_none() {
-                    self.out.trace = None;
-                    self.out.lost += 1;
-                }
-                Ok(())
-            }
-            Some(trace) => trace.row(subject, row),
-            None if self.options.trace.is_some() => {
-                self.out.lost += 1;
-                Ok(())
-            }
-            None => {
-                if self.options.has_table() {
-                    self.out.table.row(row);
-                }
-                Ok(())
-            }
+        if let Some(aside) = &mut self.out.aside {
+            aside.row(row);
         }
+        match &mut self.out.trace {
+            Some(trace) => trace.row(subject, row)?,
+            None if self.options.has_table() => self.out.table.row(row),
+            None => {}
+        }
+        Ok(())
     }
 
     fn finish(&mut self, subject: &Subject<'_>, ran: &Result<(), Error>) -> Result<(), Error> {
@@ -484,12 +473,9 @@ impl Runner<'_> {
         if self.out.rows == 0 && (self.options.from.is_some() || self.options.to.is_some()) {
             crate::error::tell(format_args!("note: no scan is between --from and --to"));
         }
+        self.out.lost += self.out.aside.take().map_or(0, Aside::finish);
         let written = self.show(subject);
-        let written = self.needed(written).map(|it| {
-            if it.is_none() && self.out.trace.as_ref().is_some_and(Trace::is_picture) {
-                self.out.lost += self.out.rows;
-            }
-        });
+        let written = self.needed(written).map(|_| ());
         if let (Some(path), lost @ 1..) = (&self.options.trace, self.out.lost) {
             let plural = if lost == 1 { "" } else { "s" };
             crate::error::tell(format_args!("warning: {}: {lost} row{plural} could not be written", path.display()));

@@ -1,12 +1,12 @@
 //! The inputs of a program, scan by scan: a CSV file.
 
-use crate::Error;
 use crate::csv::{self, Cell};
 use crate::literal;
 use crate::map::{Map, Type};
 use crate::path::{self, Place, same};
 use crate::replace::open_to_read;
 use crate::start::Event;
+use crate::{Error, Machine};
 use staunch_runtime::Time;
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -16,6 +16,8 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stimulus {
     path: PathBuf,
+    /// No row writes more.
+    pub columns: usize,
     pub rows: Vec<Row>,
 }
 
@@ -48,8 +50,22 @@ impl Write {
     /// The bytes as they are written over a state.
     pub fn over(&self, state: &[u8]) -> Cow<'_, [u8]> {
         match self.bit {
-            Some(number) => vec![state[self.offset] & !(1 << number) | self.bytes[0] << number].into(),
+            Some(_) => vec![self.byte(state)].into(),
             None => self.bytes.as_slice().into(),
+        }
+    }
+
+    /// The byte with the bit that is written.
+    fn byte(&self, state: &[u8]) -> u8 {
+        let number = self.bit.unwrap_or(0);
+        state[self.offset] & !(1 << number) | self.bytes[0] << number
+    }
+
+    /// Writes it, without allocating.
+    pub fn put(&self, machine: &mut dyn Machine) {
+        match self.bit {
+            Some(_) => machine.write(self.offset, &[self.byte(machine.state())]),
+            None => machine.write(self.offset, &self.bytes),
         }
     }
 
@@ -103,7 +119,7 @@ impl Stimulus {
         parser.header(header)?;
         let rows = (1..).zip(rows).map(|(number, cells)| parser.row(number, cells)).collect::<Result<Vec<_>, _>>()?;
         parser.in_order(&rows)?;
-        Ok(Self { path: path.to_owned(), rows })
+        Ok(Self { path: path.to_owned(), columns: parser.columns.len(), rows })
     }
 
     /// When scan `number` runs, if the row at `next` places it in time; `before` is when the last

@@ -63,9 +63,17 @@ extern \"C\" {
 #endif
 
 /* What a scan is told of the world: nanoseconds since start, whether it is the first, the turns that its
-   loops may take, which the scan counts down, and nanoseconds from one to the next, or 0. */
+   loops may take, which the scan counts down, and nanoseconds from one to the next, or 0. What it tells: how often it
+   has divided by zero and continued, as in Logix, and where first. */
 #define STAUNCH_TURNS {turns}u
-typedef struct { int64_t now; bool first_scan; uint64_t turns; int64_t cycle; } staunch_context;
+typedef struct { uint64_t count; uint32_t line; uint16_t column; uint16_t file; } staunch_minor_faults;
+typedef struct {
+    int64_t now;
+    bool first_scan;
+    uint64_t turns;
+    int64_t cycle;
+    staunch_minor_faults minor_faults;
+} staunch_context;
 
 /* An instance that runs: its number, nanoseconds from scan to scan, or 0 for each cycle of the host, and its
    priority: of those that are due together, lower ones run first. */

@@ -179,7 +179,11 @@ fn two_folders_make_the_same_bytes() {
         folder.staunch(&format!("build {arguments} -q -A warnings -o made")).out(0);
         std::fs::read(folder.0.join("made")).unwrap()
     };
-    for kind in ["rust", "map", "header", "obj", "lib", "exe", "rust --backend rust", "obj -g", "lib -g", "exe -g"] {
+    let native =
+        ["rust", "map", "header", "systemd", "obj", "lib", "exe", "obj -g", "lib -g", "exe -g", "obj --opt size"];
+    let rust = ["obj --backend rust", "lib --backend rust", "exe --backend rust"];
+    let others = ["obj --target aarch64", "obj --target riscv64", "obj --target x86_64-pc-windows-gnu"];
+    for kind in native.into_iter().chain(rust).chain(others) {
         let arguments = format!("--emit {kind}");
         let [one, other] = folders.each_ref().map(|it| made(it, &arguments));
         assert!(one == other, "{kind} differs");

@@ -63,7 +63,7 @@ _Alignas(STAUNCH_STATE_ALIGN) static uint8_t state[STAUNCH_STATE_SIZE];
 int main(void) {
     staunch_init(state);
     for (int scan = 0; scan < 2; scan++) {
-        staunch_context cx = {scan * 10000000LL, scan == 0, STAUNCH_TURNS, 10000000LL};
+        staunch_context cx = {.now = scan * 10000000LL, .first_scan = scan == 0, .turns = STAUNCH_TURNS, .cycle = 10000000LL};
         if (staunch_scan(state, &cx, STAUNCH_MAIN) != 0) {
             return 1;
         }

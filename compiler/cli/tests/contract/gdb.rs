@@ -183,6 +183,10 @@ fn plant() -> Session {
         ("print Second.Delay.PT", "= 2.5"),
         ("whatis Pause", "type = TIME"),
         ("ptype Tracker", "CV : INT;"),
+        ("ptype Mode", "(Idle, Filling, Jammed)"),
+        ("ptype Recipe", "Ratio : LREAL;"),
+        ("whatis Active", "type = Recipe"),
+        ("ptype TON", "PT : TIME;"),
     ])
 }
 

@@ -71,7 +71,7 @@ int main(void) {
         }
     }
     for (int scan = 0; scan < 3; scan++) {
-        staunch_context cx = {scan * 10000000LL, scan == 0, STAUNCH_TURNS, 10000000LL};
+        staunch_context cx = {.now = scan * 10000000LL, .first_scan = scan == 0, .turns = STAUNCH_TURNS, .cycle = 10000000LL};
         if (plant_scan(bytes, &cx, PLANT_LINE) != 0) {
             return 1;
         }
@@ -97,7 +97,9 @@ static pump_state state;
 extern "C" int other(uint8_t *plant) {
     uint8_t *bytes = reinterpret_cast<uint8_t *>(&state);
     pump_init(bytes);
-    staunch_context cx = {0, true, STAUNCH_TURNS, 0};
+    staunch_context cx = {};
+    cx.first_scan = true;
+    cx.turns = STAUNCH_TURNS;
     bool right = pump_scan(bytes, &cx, PUMP_MAIN) == 0 && state.Main.motors.t.PT == 7;
     return right && reinterpret_cast<plant_state *>(plant)->Line.rec.a == 0 ? 0 : 2;
 }
@@ -134,6 +136,50 @@ fn a_host_in_c_has_two_programs() {
     let ran = Ran::of(Command::new(folder.0.join("host")).current_dir(&folder.0).output().unwrap()).out(0);
     let table = "7 1 a \"b\" ? 0.5 1\nLine 0 10000000 2\n%IX0.0 1 -1\n%IW2 2 -1\n%QX0.1 1 -1\n";
     assert_eq!(ran, format!("{table}1 1 1 2.5 five 0\n12 1 15\n"));
+}
+
+/// A host in C, with bytes behind the context that a scan must not touch.
+const COUNTS: &str = r#"
+#include <stdio.h>
+#include "plant.h"
+
+static struct staunch_state state;
+static struct { staunch_context cx; uint8_t after[32]; } told;
+
+int main(void) {
+    staunch_init((uint8_t *)&state);
+    for (int scan = 0; scan < 2; scan++) {
+        told.cx = (staunch_context){.now = scan * 10000000LL, .first_scan = scan == 0, .turns = STAUNCH_TURNS};
+        if (staunch_scan((uint8_t *)&state, &told.cx, STAUNCH_MAIN) != 0) {
+            return 1;
+        }
+        staunch_minor_faults minor = told.cx.minor_faults;
+        printf("%d %d:%d\n", (int)minor.count, (int)minor.line, (int)minor.column);
+    }
+    for (int at = 0; at < 32; at++) {
+        if (told.after[at] != 0) {
+            return 2;
+        }
+    }
+    return 0;
+}
+"#;
+
+/// What divides by zero and continues tells it in the host's context, and nowhere else.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_host_in_c_is_told_of_minor_faults() {
+    let program = "PROGRAM Main\nVAR a, b : DINT; END_VAR\nb := 7 / a;\nb := b MOD a;\na := a + 1;\nEND_PROGRAM\n";
+    let folder = Folder::with("header_minor", &[("plant.st", program), ("host.c", COUNTS)]);
+    folder.staunch("build plant.st --dialect logix --emit header -o plant.h -q").out(0);
+    for backend in ["native", "rust"] {
+        folder
+            .staunch(&format!("build plant.st --dialect logix --backend {backend} --emit lib -o libplant.a -q"))
+            .out(0);
+        compiled(&folder, "cc", "-std=c11 host.c libplant.a -lm -lpthread -ldl -o host");
+        let ran = Ran::of(Command::new(folder.0.join("host")).current_dir(&folder.0).output().unwrap()).out(0);
+        assert_eq!(ran, "2 3:8\n0 0:0\n", "{backend}");
+    }
 }
 
 /// A prefix is for what is linked with others, and a name of C.

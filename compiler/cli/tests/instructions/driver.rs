@@ -27,7 +27,7 @@ pub fn compiled(subject: &Subject) -> String {
         head: "#include \"program.h\"\nstatic _Alignas(64) uint8_t state[STAUNCH_STATE_SIZE];\n".to_owned(),
         start: "    staunch_init(state);\n",
         scan: format!(
-            "        staunch_context cx = {{ (int64_t)s * 1000000, s == 0, STAUNCH_TURNS, 1000000 }};
+            "        staunch_context cx = {{ .now = (int64_t)s * 1000000, .first_scan = s == 0, .turns = STAUNCH_TURNS, .cycle = 1000000 }};
         if (staunch_scan(state, &cx, STAUNCH_{program}) != 0) return 1;\n"
         ),
         set: &|name, value| format!("STAUNCH_{program}_{name}(state) = {value};"),

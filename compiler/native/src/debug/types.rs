@@ -6,7 +6,7 @@ use gimli::constants::{
     DW_AT_decimal_scale, DW_AT_encoding, DW_AT_lower_bound, DW_AT_upper_bound, DW_ATE_boolean, DW_ATE_float,
     DW_ATE_signed, DW_ATE_signed_fixed, DW_ATE_unsigned, DW_ATE_unsigned_char, DW_ATE_unsigned_fixed,
     DW_TAG_array_type, DW_TAG_base_type, DW_TAG_enumeration_type, DW_TAG_enumerator, DW_TAG_member,
-    DW_TAG_pointer_type, DW_TAG_structure_type, DW_TAG_subrange_type, DwAte,
+    DW_TAG_pointer_type, DW_TAG_structure_type, DW_TAG_subrange_type, DW_TAG_typedef, DwAte,
 };
 use gimli::write::{AttributeValue, UnitEntryId};
 use staunch_ir::{
@@ -34,7 +34,24 @@ impl Entries<'_> {
             Type::Reference(_) => self.base(&self.program.type_name(ty), DW_ATE_unsigned, 8),
         };
         self.types.insert(ty, id);
+        self.name_type(ty, id);
         id
+    }
+
+    /// Debuggers of Pascal look types up among variables, where structures and enumerations are not. Nor are function blocks, which have the
+    /// name of their routine.
+    fn name_type(&mut self, ty: Type, id: UnitEntryId) {
+        let program = self.program;
+        let is_state = |it| program.globals == it || program.classes.iter().any(|class| class.state == it);
+        let is_looked_up = match ty {
+            Type::Enum(_) | Type::Block(_) => true,
+            Type::Struct(it) => !is_state(it),
+            Type::Elementary(_) | Type::String(_) | Type::Subrange(..) | Type::Array(_) | Type::Reference(_) => false,
+        };
+        if is_looked_up {
+            let name = self.add_named(self.root(), DW_TAG_typedef, &program.type_name(ty));
+            self.set_type(name, id);
+        }
     }
 
     /// A pointer of the machine to a variable.

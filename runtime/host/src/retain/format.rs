@@ -224,5 +224,31 @@ fn tail(text: &str, room: usize) -> &str {
     from.map_or("", |it| &text[it..])
 }
 
+/// A file of these bytes, of which the first line is a number of bytes of the head, with the checksums that it should have: no fuzzer guesses them.
+#[cfg(fuzzing)]
+pub(super) fn with_checksums(bytes: &[u8]) -> Vec<u8> {
+    let (length, rest) = bytes.split_first().map_or((0, bytes), |(it, rest)| (usize::from(*it), rest));
+    let (head, slots) = rest.split_at(length.min(rest.len()));
+    let mut file = format!("{TITLE}{VERSION}\n").into_bytes();
+    file.extend(head);
+    file.push(b'\n');
+    let fingerprint = crc32(&file);
+    file.extend(format!("{CHECKSUM}{fingerprint:08x}\n").bytes());
+    let Some((layout, ..)) = self::head(&file, VERSION) else { return file };
+    if layout.file_size() > 1 << 16 {
+        return file;
+    }
+    file.resize(layout.file_size(), 0);
+    for slot in Slot::BOTH {
+        let at = layout.offset(slot);
+        for (to, from) in file[at..at + layout.used()].iter_mut().zip(slots) {
+            *to = *from;
+        }
+        let checksum = slot_checksum(layout.fingerprint, &file[at..at + layout.used()]);
+        file[at..at + 4].copy_from_slice(&checksum.to_le_bytes());
+    }
+    file
+}
+
 #[cfg(test)]
 mod tests;

@@ -18,6 +18,8 @@ const NARROWEST: usize = 3;
 #[derive(Debug)]
 pub(crate) struct Table {
     rows: VecDeque<Kept>,
+    /// With room for the values, so that no row allocates.
+    spare: Vec<Kept>,
     /// Characters in a line.
     width: usize,
     /// The places of the columns in the state, in their order; neighbours are one range.
@@ -42,11 +44,14 @@ impl Table {
                 _ => parts.push(start..start + size),
             }
         }
-        Self { rows: VecDeque::with_capacity(ROWS), width, parts }
+        let size = parts.iter().map(Range::len).sum();
+        let spare = || Kept { bytes: Vec::with_capacity(size), ..Kept::default() };
+        let spare = (0..ROWS).map(|_| spare()).collect();
+        Self { rows: VecDeque::with_capacity(ROWS), spare, width, parts }
     }
 
     pub fn row(&mut self, row: Row<'_>) {
-        let mut kept = if self.rows.len() < ROWS { Kept::default() } else { self.rows.pop_front().unwrap_or_default() };
+        let mut kept = self.spare.pop().or_else(|| self.rows.pop_front()).unwrap_or_default();
         (kept.scan, kept.time) = (row.scan, row.time);
         kept.bytes.clear();
         for part in &self.parts {
