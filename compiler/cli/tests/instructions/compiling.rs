@@ -1,5 +1,5 @@
-//! What the command itself takes for `check` and for `build --emit rust`, of a few programs, by cachegrind, which counts faster
-//! than callgrind.
+//! What the command itself takes for `check`, `build --emit rust` and `build --emit obj`, of a few programs, by cachegrind, which
+//! counts faster than callgrind.
 //!
 //! It is the command that the tests have, of their profile: a release takes a tenth of that, but what makes one slower makes the
 //! other slower too. It runs in a folder of its own, without an environment, on files of fixed names, so that the checkout's
@@ -26,20 +26,24 @@ fn subjects() -> Vec<Subject> {
         ("objects", "codesys", vec![file("tests/perf/programs/heirs.st")]),
         ("timers_and_counters", "iec", vec![file("st_examples/small_plant/small_plant.st")]),
         ("twincat", "twincat", twincat.to_vec()),
-        ("large", "iec", vec![large()]),
+        ("medium", "iec", vec![stations(10)]),
+        (LARGE, "iec", vec![stations(100)]),
     ]
 }
 
-/// 5000 lines: a hundred stations, each a type, a function, and a block with a loop, a CASE, a timer, a counter and a text.
-fn large() -> String {
+/// Its machine code is not made: cachegrind would take a minute.
+const LARGE: &str = "large";
+
+/// Stations of fifty lines, each a type, a function, and a block with a loop, a CASE, a timer, a counter and a text.
+fn stations(count: usize) -> String {
     let mut text = String::new();
-    for n in 0..100 {
+    for n in 0..count {
         write!(text, "{}", STATION.replace('@', &n.to_string())).unwrap();
     }
     text.push_str("PROGRAM Main\nVAR start : BOOL; total : DINT;\n");
-    (0..100).for_each(|n| writeln!(text, "s{n} : Station{n};").unwrap());
+    (0..count).for_each(|n| writeln!(text, "s{n} : Station{n};").unwrap());
     text.push_str("END_VAR\ntotal := 0;\n");
-    for n in 0..100 {
+    for n in 0..count {
         writeln!(text, "s{n}(start := start, limit := {n});\ntotal := total + INT_TO_DINT(s{n}.full);").unwrap();
     }
     text.push_str("END_PROGRAM\n");
@@ -97,8 +101,8 @@ mean := Mean@(parts := parts);
 END_FUNCTION_BLOCK
 ";
 
-/// Every program, both ways at a time.
-pub fn measured() -> BTreeMap<String, Measured<2>> {
+/// Every program, two ways at a time.
+pub fn measured() -> BTreeMap<String, Measured<3>> {
     let mut measured = BTreeMap::new();
     for (name, dialect, texts) in subjects() {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compiling").join(name);
@@ -106,10 +110,11 @@ pub fn measured() -> BTreeMap<String, Measured<2>> {
         let files: Vec<String> = (1..=texts.len()).map(|at| format!("program_{at}.st")).collect();
         files.iter().zip(&texts).for_each(|(file, text)| fs::write(folder.join(file), text).unwrap());
         link(&folder.join("staunch"));
-        let count = |before: &[&str]| Some(instructions(&folder, before, dialect, &files));
+        let count = |before: &[&str]| instructions(&folder, before, dialect, &files);
         let figures = std::thread::scope(|scope| {
-            let build = scope.spawn(|| count(&["build", "--emit", "rust", "-o", "program.rs"]));
-            [count(&["check"]), build.join().expect("it is measured")]
+            let rust = scope.spawn(|| count(&["build", "--emit", "rust", "-o", "program.rs"]));
+            let native = (name != LARGE).then(|| count(&["build", "--emit", "obj", "-o", "program.o"]));
+            [Some(count(&["check"])), Some(rust.join().expect("it is measured")), native]
         });
         measured.insert(name.to_owned(), figures);
     }

@@ -249,7 +249,7 @@ impl<'s> Checker<'_, 's> {
         let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
         if self.decl.log.is_asked(name.span) {
             let own = scope.variables.iter().map(|it| it.name).filter(|it| !it.text.starts_with("__"));
-            own.for_each(|it| self.decl.log.offer_expected(it.text, Named::Declared(it.span)));
+            own.for_each(|it| self.decl.log.offer_expected(it.text, Named::Definition(it.span)));
         }
         let Some(variable) = scope.get(name.text).cloned() else {
             // A METHOD that is inherited has been looked at before.

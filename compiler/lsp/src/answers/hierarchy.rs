@@ -111,21 +111,26 @@ pub fn prepare_calls(analysis: &Analysis, place: Place) -> Option<CallHierarchyI
 }
 
 pub fn incoming(analysis: &Analysis, of: Place) -> Vec<CallHierarchyIncomingCall> {
-    let Some(of) = analysis.definition_at(of) else { return Vec::new() };
-    let grouped = grouped(all(analysis).into_iter().filter(|it| it.callee == of).map(|it| (it.caller, it.at)));
-    let shown = grouped.into_iter().filter_map(|(id, places)| {
-        let from_ranges = places.into_iter().map(|it| analysis.range(it)).collect();
-        Some(CallHierarchyIncomingCall { from: call_item(analysis, id)?, from_ranges })
-    });
-    shown.collect()
+    let others = others(analysis, of, |it| (it.callee, it.caller)).into_iter();
+    others.map(|(from, from_ranges)| CallHierarchyIncomingCall { from, from_ranges }).collect()
 }
 
 pub fn outgoing(analysis: &Analysis, of: Place) -> Vec<CallHierarchyOutgoingCall> {
+    let others = others(analysis, of, |it| (it.caller, it.callee)).into_iter();
+    others.map(|(to, from_ranges)| CallHierarchyOutgoingCall { to, from_ranges }).collect()
+}
+
+/// What is at the other end of the calls of a POU, with the places of the calls. `ends` gives this end first.
+fn others(
+    analysis: &Analysis,
+    of: Place,
+    ends: impl Fn(&Call) -> (DefId, DefId),
+) -> Vec<(CallHierarchyItem, Vec<Range>)> {
     let Some(of) = analysis.definition_at(of) else { return Vec::new() };
-    let grouped = grouped(all(analysis).into_iter().filter(|it| it.caller == of).map(|it| (it.callee, it.at)));
+    let own = all(analysis).into_iter().filter(|it| ends(it).0 == of);
+    let grouped = grouped(own.map(|it| (ends(&it).1, it.at)));
     let shown = grouped.into_iter().filter_map(|(id, places)| {
-        let from_ranges = places.into_iter().map(|it| analysis.range(it)).collect();
-        Some(CallHierarchyOutgoingCall { to: call_item(analysis, id)?, from_ranges })
+        Some((call_item(analysis, id)?, places.into_iter().map(|it| analysis.range(it)).collect()))
     });
     shown.collect()
 }
