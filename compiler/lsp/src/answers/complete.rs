@@ -6,7 +6,7 @@ use crate::project::{Analysis, Documents, Project};
 use gen_lsp_types::{
     CompletionItem, CompletionItemKind, Documentation, InsertTextFormat, MarkupContent, MarkupKind, Position,
 };
-use staunch_frontend::{DefinitionKind, Meaning, Offer, Source};
+use staunch_frontend::{DefinitionKind, Meaning, Offer, Source, format};
 use staunch_syntax::lex::{Kind, lex};
 use std::path::Path;
 
@@ -24,9 +24,17 @@ pub fn complete(project: &mut Project, documents: &Documents, path: &Path, posit
         return Vec::new();
     }
     let is_member = document[..start].trim_end().ends_with('.');
-    let text = with_name(&document, start, at);
-    let found = project.offers(documents, file, &text, count(start));
-    let mut items: Vec<_> = found.index.offers.iter().filter(|it| it.name != HERE).map(|it| item(&found, it)).collect();
+    let mut offered = |text: &str, is_wanted: fn(&Offer) -> bool| -> Vec<_> {
+        let found = project.offers(documents, file, text, count(start));
+        let offers = found.index.offers.iter().filter(|it| it.name != HERE && is_wanted(it));
+        offers.map(|it| item(&found, it)).collect()
+    };
+    let mut items = offered(&with_name(&document, start, at, ";"), |_| true);
+    if may_be_label(&document, start) {
+        let mut labels = offered(&with_name(&document, start, at, ": ;"), |it| it.is_expected);
+        items.retain(|it| labels.iter().all(|label| label.label != it.label));
+        items.append(&mut labels);
+    }
     if !is_member && !document[..start].trim_end().ends_with(['#', '%']) {
         items.extend(words(typed));
     }
@@ -43,8 +51,17 @@ fn word_before(text: &str, at: u32) -> (usize, &str) {
     (start, &before[start..])
 }
 
-/// The document with a name in place of the one that is being typed, followed by what its statement lacks.
-fn with_name(text: &str, start: usize, at: u32) -> String {
+/// Whether a name that begins a line may be a label: the innermost block around it is a CASE.
+fn may_be_label(text: &str, start: usize) -> bool {
+    let begins_line = text[..start].rsplit('\n').next().is_some_and(|it| it.trim().is_empty());
+    let around = || format::block_ranges(text).into_iter().filter(|it| it.start < start && start <= it.end);
+    let innermost = || around().min_by_key(|it| it.end - it.start);
+    let is_case = |start: usize| text.get(start..start + 4).is_some_and(|it| it.eq_ignore_ascii_case("CASE"));
+    begins_line && innermost().is_some_and(|it| is_case(it.start))
+}
+
+/// The document with a name in place of the one that is being typed, followed by what its statement lacks, with its end.
+fn with_name(text: &str, start: usize, at: u32, end_of_statement: &str) -> String {
     let end = usize::try_from(at).unwrap_or(usize::MAX).min(text.len());
     let rest = &text[end..];
     let tail = rest.find(|it: char| !(it.is_alphanumeric() || it == '_')).unwrap_or(rest.len());
@@ -53,7 +70,7 @@ fn with_name(text: &str, start: usize, at: u32) -> String {
     // Brackets that are open are closed; a statement that is a name alone ends with its line.
     let before = text[..start].rsplit(['\n', ';']).next().unwrap_or_default();
     let depth = before.matches('(').count().saturating_sub(before.matches(')').count());
-    let close = if line.trim().is_empty() { ")".repeat(depth) + ";" } else { String::new() };
+    let close = if line.trim().is_empty() { ")".repeat(depth) + end_of_statement } else { String::new() };
     format!("{}{HERE}{close}{rest}", &text[..start])
 }
 

@@ -88,13 +88,23 @@ fn around(analysis: &Analysis, at: Span) -> Option<DefId> {
     all.min_by_key(|(_, it)| it.extent.end - it.extent.start).map(|it| it.0)
 }
 
+/// What `SUPER^()` calls in a POU: the body of the block that its own one extends.
+fn base(analysis: &Analysis, caller: DefId) -> Option<DefId> {
+    let class = analysis.index.get(caller).owner.unwrap_or(caller);
+    analysis.bases(class).into_iter().find(|it| is_called(analysis, *it))
+}
+
 fn all(analysis: &Analysis) -> Vec<Call> {
     let mut found = Vec::new();
     for (source, file) in analysis.sources.files().iter().zip(0u16..) {
         for call in calls(file, &source.text) {
-            let meant = analysis.index.at(file, call.name.start);
-            let Some((_, Meaning::Definition(id))) = meant else { continue };
-            if let (Some(callee), Some(caller)) = (target(analysis, id), around(analysis, call.name)) {
+            let Some(caller) = around(analysis, call.name) else { continue };
+            let callee = match analysis.index.at(file, call.name.start) {
+                Some((_, Meaning::Definition(id))) => target(analysis, id),
+                _ if analysis.sources.text(call.name).eq_ignore_ascii_case("SUPER") => base(analysis, caller),
+                _ => None,
+            };
+            if let Some(callee) = callee {
                 // A POU's own name before its bracket is its head.
                 if analysis.index.get(callee).name != call.name {
                     found.push(Call { caller, callee, at: call.name });
