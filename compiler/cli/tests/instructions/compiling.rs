@@ -1,10 +1,11 @@
-//! What the command itself takes for `check`, `build --emit rust` and `build --emit obj`, of a few programs, by cachegrind, which
-//! counts faster than callgrind.
+//! What the command itself takes for `check`, `build --emit rust` and `build --emit obj`, of a few programs, and for keys in an
+//! editor, by cachegrind, which counts faster than callgrind.
 //!
 //! It is the command that the tests have, of their profile: a release takes a tenth of that, but what makes one slower makes the
 //! other slower too. It runs in a folder of its own, without an environment, on files of fixed names, so that the checkout's
 //! path does not count. Counts vary by less than 0.2 %, by the seeds of hash tables and of the allocator.
 
+use crate::editing;
 use crate::measure::{ONE_MEMCPY, succeeds};
 use crate::root;
 use crate::table::Measured;
@@ -26,11 +27,13 @@ fn subjects() -> Vec<Subject> {
         ("objects", "codesys", vec![file("tests/perf/programs/heirs.st")]),
         ("timers_and_counters", "iec", vec![file("st_examples/small_plant/small_plant.st")]),
         ("twincat", "twincat", twincat.to_vec()),
-        ("medium", "iec", vec![stations(10)]),
+        (MEDIUM, "iec", vec![stations(10)]),
         (LARGE, "iec", vec![stations(100)]),
     ]
 }
 
+/// The program that is edited.
+const MEDIUM: &str = "medium";
 /// Its machine code is not made: cachegrind would take a minute.
 const LARGE: &str = "large";
 
@@ -102,7 +105,7 @@ END_FUNCTION_BLOCK
 ";
 
 /// Every program, two ways at a time.
-pub fn measured() -> BTreeMap<String, Measured<3>> {
+pub fn measured() -> BTreeMap<String, Measured<4>> {
     let mut measured = BTreeMap::new();
     for (name, dialect, texts) in subjects() {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compiling").join(name);
@@ -114,7 +117,8 @@ pub fn measured() -> BTreeMap<String, Measured<3>> {
         let figures = std::thread::scope(|scope| {
             let rust = scope.spawn(|| count(&["build", "--emit", "rust", "-o", "program.rs"]));
             let native = (name != LARGE).then(|| count(&["build", "--emit", "obj", "-o", "program.o"]));
-            [Some(count(&["check"])), Some(rust.join().expect("it is measured")), native]
+            let edited = (name == MEDIUM).then(|| edited(&folder, dialect, &files[0], &texts[0]));
+            [Some(count(&["check"])), Some(rust.join().expect("it is measured")), native, edited]
         });
         measured.insert(name.to_owned(), figures);
     }
@@ -122,12 +126,25 @@ pub fn measured() -> BTreeMap<String, Measured<3>> {
 }
 
 fn instructions(folder: &Path, before: &[&str], dialect: &str, files: &[String]) -> u64 {
+    let mut valgrind = counted(folder);
+    valgrind.args(before).args(["--quiet", "--dialect", dialect]).args(files);
+    of_report(&String::from_utf8_lossy(&succeeds(&mut valgrind).stderr))
+}
+
+fn edited(folder: &Path, dialect: &str, file: &str, text: &str) -> u64 {
+    let mut valgrind = counted(folder);
+    of_report(&editing::session(valgrind.args(["lsp", "--dialect", dialect]), &folder.join(file), text))
+}
+
+/// The command, under cachegrind.
+fn counted(folder: &Path) -> Command {
     let mut valgrind = Command::new(valgrind_path());
     valgrind.args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "./staunch"]);
-    valgrind.args(before).args(["--quiet", "--dialect", dialect]).args(files).current_dir(folder);
-    valgrind.env_clear().env(ONE_MEMCPY.0, ONE_MEMCPY.1);
-    let output = succeeds(&mut valgrind);
-    let report = String::from_utf8_lossy(&output.stderr);
+    valgrind.current_dir(folder).env_clear().env(ONE_MEMCPY.0, ONE_MEMCPY.1);
+    valgrind
+}
+
+fn of_report(report: &str) -> u64 {
     let counted = report.lines().find_map(|line| line.rsplit_once(" refs:")).unwrap().1;
     counted.trim().replace(',', "").parse().unwrap()
 }

@@ -40,9 +40,10 @@ fn with(text: &str, start: &str, tables: &str) -> String {
     format!("{before}{start}\n{tables}\n{END}{after}")
 }
 
-fn compiling(table: &Table<3>) -> String {
+fn compiling(table: &Table<4>) -> String {
     let mut text =
-        "| program | `check` | `build --emit rust` | `build --emit obj` |\n|---|---:|---:|---:|\n".to_owned();
+        "| program | `check` | `build --emit rust` | `build --emit obj` | `lsp` |\n|---|---:|---:|---:|---:|\n"
+            .to_owned();
     for (name, row) in table {
         let figures = row.figures.map(|it| it.map(|it| format!("{:.1}", it as f64 / 1e6)).unwrap_or_default());
         writeln!(text, "| {name} | {} |", figures.join(" | ")).unwrap();
