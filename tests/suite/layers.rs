@@ -12,7 +12,7 @@ const SYNTAX_LAYERS: [&str; 9] =
 const ROOT: &str = "compiler/frontend/src";
 
 /// The folders and files at the root, from the lowest.
-const LAYERS: [&str; 28] = [
+const LAYERS: [&str; 29] = [
     "added",
     "allow",
     "declared",
@@ -29,6 +29,7 @@ const LAYERS: [&str; 28] = [
     "log",
     "locate",
     "absent",
+    "said_once",
     "chart",
     "enabled",
     "prelude",

@@ -13,8 +13,8 @@ use crate::{Diagnostic, ast};
 use recorder::{Named, Offered, Recorder};
 use rustc_hash::FxHashMap;
 
-/// A program as an editor asks about it. It is there for sources with mistakes, too: what could not be understood has no
-/// entry.
+/// What the names of a program mean, for an editor. Sources with mistakes have an index, too: a name that could not be
+/// resolved has no entry.
 #[derive(Debug, Default)]
 pub struct Index {
     pub definitions: Vec<Definition>,
@@ -78,7 +78,7 @@ impl Index {
             // What the compiler writes out has the place of what it stands for. The library's names may be other ones.
             let text = sources.text(span);
             let is_written = match &target {
-                Named::Declared(it) => {
+                Named::Definition(it) => {
                     sources.get(it.file).is_bundled() || bare(text).eq_ignore_ascii_case(bare(sources.text(*it)))
                 }
                 _ => is_name(text),

@@ -7,6 +7,7 @@ mod chart;
 mod declared;
 mod enabled;
 mod index;
+mod said_once;
 mod testing;
 
 mod automation_studio;
@@ -59,7 +60,7 @@ use staunch_syntax::{diagnostic, foreign, lex, parse, source, spelling};
 use index::recorder::Recorder;
 use lex::{Declared, Known, Subject};
 use log::Log;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use staunch_ir::Program;
 use types::coverage::Coverage;
 use types::whole::Whole;
@@ -235,7 +236,8 @@ fn run_with(
     }
     let readdressed = std::mem::take(&mut declarations.log.readdressed);
     let coverage = declarations.coverage.take().map(|it| it.points).unwrap_or_default();
-    let compilation = finish(program.filter(|_| keep == Bodies::Kept), declarations.log, unassigned, left_out);
+    let program = program.filter(|_| keep == Bodies::Kept);
+    let compilation = finish(program, declarations.log, &said_once::units(&files), unassigned, left_out);
     let mut compilation = Compilation { tests, coverage, readdressed, ..compilation };
     if has_tests && !options.tests {
         // Unit tests that do not run are still checked.
@@ -457,48 +459,14 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
     Diagnostic::new(code, span, problem.message.clone()).help(problem.help.as_deref().unwrap_or(help))
 }
 
-/// Of what is refused by its name, what programs name in many places.
-const NAMED_ONCE: [&str; 4] = [" of Tc2_Utilities ", " of Util ", " __VARINFO ", "`__CURRENTTASK`"];
-
-/// What is there nowhere is one mistake, however often it is named: the first place is reported, with the number of
-/// the others.
-fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic> {
-    let mut first: FxHashMap<(Code, String), (usize, usize)> = FxHashMap::default();
-    let mut kept: Vec<Diagnostic> = Vec::with_capacity(diagnostics.len());
-    for it in diagnostics {
-        // `Severity.Info` of an enumeration, list or namespace that is not there.
-        let is_owner = || {
-            let after = sources.get(it.span.file).text.get(usize::try_from(it.span.end).unwrap_or(usize::MAX)..);
-            it.message.ends_with(" is not declared") && after.is_some_and(|it| it.starts_with('.'))
-        };
-        let is_missing = match it.code {
-            Code::E0102 | Code::E0307 => {
-                let of_library = it.message.starts_with("the library `") && it.fix.is_none();
-                of_library || it.message.starts_with("there is no ")
-            }
-            Code::E0101 => is_owner(),
-            Code::E0902 => NAMED_ONCE.iter().any(|name| it.message.contains(name)),
-            _ => false,
-        };
-        if !is_missing {
-            kept.push(it);
-            continue;
-        }
-        let place = kept.len();
-        let (_, others) = first.entry((it.code, it.message.clone())).and_modify(|it| it.1 += 1).or_insert((place, 0));
-        if *others == 0 {
-            kept.push(it);
-        }
-    }
-    for (place, others) in first.into_values().filter(|it| it.1 > 0) {
-        let places = if others == 1 { "place" } else { "places" };
-        kept[place].notes.push(format!("it is named in {others} more {places}"));
-    }
-    kept
-}
-
 /// Sorts what was reported, and holds what a program promises that was accepted.
-fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, left_out: Option<Span>) -> Compilation {
+fn finish(
+    program: Option<Program>,
+    log: Log<'_>,
+    units: &[Span],
+    unassigned: Vec<Diagnostic>,
+    left_out: Option<Span>,
+) -> Compilation {
     let Log { sources, mut diagnostics, .. } = log;
     let rejected = diagnostics.iter().any(|it| it.severity == Severity::Error);
     if rejected {
@@ -508,7 +476,7 @@ fn finish(program: Option<Program>, log: Log<'_>, unassigned: Vec<Diagnostic>, l
         diagnostics.extend(unassigned);
     }
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
-    let diagnostics = said_once(absent::deduplicate_missing(diagnostics, sources), sources);
+    let diagnostics = said_once::said_once(absent::deduplicate_missing(diagnostics, sources), sources, units);
     if let (Some(span), false) = (left_out, rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }

@@ -76,7 +76,7 @@ impl<'s> Log<'s> {
 
     /// Notes the declaration that a name means.
     pub fn note_declared(&self, name: Span, declared: Span) {
-        self.note(name, || Named::Declared(declared));
+        self.note(name, || Named::Definition(declared));
     }
 
     /// Whether an editor asks what a name could be that is here.

@@ -1,10 +1,10 @@
 //! What a program uses of the language, as far as a system may compute it in its own way.
 
+use rustc_hash::FxHashMap;
 use staunch_runtime::{Class, Elementary, Location};
-use std::collections::BTreeMap;
 
 /// One such thing. Classes of types are those of the operands; a use of a class is one of the classes around it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Use {
     /// The program computes with the type, or converts it. Choosing and comparing do not count: they make no new values.
     Type(Elementary),
@@ -19,7 +19,7 @@ pub enum Use {
 }
 
 /// A part of the language that a system may run in its own way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Part {
     /// A call with an input EN.
     Enable,
@@ -198,7 +198,7 @@ const fn of_class(class: Class) -> &'static str {
 
 /// What a program uses, each with the first place in its source. Operations of constant expressions are included.
 #[derive(Clone, Debug, Default)]
-pub struct Uses(BTreeMap<Use, Location>);
+pub struct Uses(FxHashMap<Use, Location>);
 
 impl Uses {
     /// Notes a use, at the first place that has it.

@@ -6,7 +6,7 @@ use staunch_syntax::lex::{Kind, lex};
 /// `name(…)`
 #[derive(Clone, Debug)]
 pub struct Call {
-    /// The last name before the bracket.
+    /// The last name before the bracket, or before the index or the `^` in front of it.
     pub name: Span,
     /// The bracket that opens it.
     pub open: u32,
@@ -37,11 +37,11 @@ pub fn calls(file: u16, text: &str) -> Vec<Call> {
         let before = at.checked_sub(1).map(|it| tokens[it]);
         match kind {
             Kind::OpenParen => {
-                let named = before.filter(|it| it.0 == Kind::Name);
+                let named = callee(&tokens[..at]);
                 if named.is_none() {
                     extend(&mut found, &open, span(*place));
                 }
-                open.push(named.map(|(_, name)| {
+                open.push(named.map(|name| {
                     found.push(Call {
                         name: span(name),
                         open: place.0,
@@ -87,6 +87,23 @@ pub fn calls(file: u16, text: &str) -> Vec<Call> {
         }
     }
     found
+}
+
+/// The name of what is called, of the tokens before the bracket: `f`, `a[i]`, `p^`.
+fn callee(tokens: &[(Kind, (u32, u32))]) -> Option<(u32, u32)> {
+    let mut depth = 0usize;
+    for (kind, place) in tokens.iter().rev() {
+        match kind {
+            Kind::CloseBracket => depth += 1,
+            Kind::OpenBracket => depth = depth.checked_sub(1)?,
+            Kind::Semicolon => return None,
+            _ if depth > 0 => {}
+            Kind::Caret => {}
+            Kind::Name => return Some(*place),
+            _ => return None,
+        }
+    }
+    None
 }
 
 /// Adds a token to the last argument of the calls around it.

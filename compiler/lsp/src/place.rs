@@ -19,7 +19,7 @@ pub fn position(document: &Source, offset: u32) -> Position {
     Position { line: line.saturating_sub(1), character: count(before.encode_utf16().count()) }
 }
 
-/// The byte of a document at a position; one that is behind the end of a line is its end.
+/// The byte of a document at a position; a position after the end of a line is that end.
 pub fn offset(document: &Source, position: Position) -> u32 {
     let range = document.line_range(position.line.saturating_add(1));
     let mut words = 0;

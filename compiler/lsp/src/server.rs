@@ -1,5 +1,4 @@
-//! The messages of an editor, one after the other. What is typed comes first: a request is answered for the texts as they are when its
-//! turn comes, so that no answer is of an older one.
+//! The messages of an editor. Changes of documents are read before requests are answered, so that no answer is about an older text.
 
 mod capabilities;
 mod requests;

@@ -150,6 +150,10 @@ fn completion_offers_what_could_be_there() {
     let enumerators = offered(&mut editor, "state := |;");
     assert!(has(&enumerators[..3], &["Idle", "Running", "Faulted"]), "{enumerators:?}");
     assert_eq!(offered(&mut editor, "state := State.|;"), ["Idle", "Running", "Faulted"]);
+    let labels_of_case = offered(&mut editor, "CASE state OF\n    |\n    Idle: level := 1.0;\nEND_CASE");
+    assert!(has(&labels_of_case[..3], &["Idle", "Running", "Faulted"]), "{labels_of_case:?}");
+    let either = offered(&mut editor, "CASE state OF\n    Idle: level := 1.0;\n    |\nEND_CASE");
+    assert!(has(&either, &["Idle", "Running", "level", "first"]), "{either:?}");
     let (text, at) = cursor(&MAIN.replace("level : REAL;", "level : REAL; other : |;"));
     editor.write("main.st", &text);
     let types = editor.at("completion", "main.st", at);
@@ -253,6 +257,20 @@ fn calls_are_followed_in_both_directions() {
     let called = editor.ask("callHierarchy/outgoingCalls", json!({ "item": main }));
     let names: Vec<_> = called.as_array().expect("a list").iter().map(|it| it["to"]["name"].clone()).collect();
     assert_eq!(names, [json!("Pump"), json!("Scale")]);
+    editor.close();
+}
+
+#[test]
+fn calls_of_elements_references_and_bases_are_followed() {
+    let text = "FUNCTION_BLOCK Base\nEND_FUNCTION_BLOCK\nFUNCTION_BLOCK Heir EXTENDS Base\nSUPER^();\nEND_FUNCTION_BLOCK\nPROGRAM Main\nVAR all : ARRAY[0..2] OF Heir; base : POINTER TO Base; i : INT; END_VAR\nall[i]();\nbase^();\nEND_PROGRAM\n";
+    let mut editor = Editor::open(Dialect::Codesys, &[("main.st", text)]);
+    let item = editor.at("prepareCallHierarchy", "main.st", (0, 16))[0].clone();
+    let callers = editor.ask("callHierarchy/incomingCalls", json!({ "item": item }));
+    let names: Vec<_> = callers.as_array().expect("a list").iter().map(|it| it["from"]["name"].clone()).collect();
+    assert_eq!(names, [json!("Heir"), json!("Main")]);
+    let called = editor.ask("callHierarchy/outgoingCalls", json!({ "item": callers[1]["from"] }));
+    let names: Vec<_> = called.as_array().expect("a list").iter().map(|it| it["to"]["name"].clone()).collect();
+    assert_eq!(names, [json!("Heir"), json!("Base")]);
     editor.close();
 }
 

@@ -19,7 +19,7 @@ mod words;
 
 pub use file::{Refusal, bytes};
 pub use style::{Indent, Letters, Style};
-pub use text::{part, whole};
+pub use text::{block_ranges, part, whole};
 
 #[cfg(test)]
 mod tests;

@@ -1,10 +1,11 @@
-//! What the command itself takes for `check` and for `build --emit rust`, of a few programs, by cachegrind, which counts faster
-//! than callgrind.
+//! What the command itself takes for `check`, `build --emit rust` and `build --emit obj`, of a few programs, and for keys in an
+//! editor, by cachegrind, which counts faster than callgrind.
 //!
 //! It is the command that the tests have, of their profile: a release takes a tenth of that, but what makes one slower makes the
 //! other slower too. It runs in a folder of its own, without an environment, on files of fixed names, so that the checkout's
 //! path does not count. Counts vary by less than 0.2 %, by the seeds of hash tables and of the allocator.
 
+use crate::editing;
 use crate::measure::{ONE_MEMCPY, succeeds};
 use crate::root;
 use crate::table::Measured;
@@ -26,20 +27,26 @@ fn subjects() -> Vec<Subject> {
         ("objects", "codesys", vec![file("tests/perf/programs/heirs.st")]),
         ("timers_and_counters", "iec", vec![file("st_examples/small_plant/small_plant.st")]),
         ("twincat", "twincat", twincat.to_vec()),
-        ("large", "iec", vec![large()]),
+        (MEDIUM, "iec", vec![stations(10)]),
+        (LARGE, "iec", vec![stations(100)]),
     ]
 }
 
-/// 5000 lines: a hundred stations, each a type, a function, and a block with a loop, a CASE, a timer, a counter and a text.
-fn large() -> String {
+/// The program that is edited.
+const MEDIUM: &str = "medium";
+/// Its machine code is not made: cachegrind would take a minute.
+const LARGE: &str = "large";
+
+/// Stations of fifty lines, each a type, a function, and a block with a loop, a CASE, a timer, a counter and a text.
+fn stations(count: usize) -> String {
     let mut text = String::new();
-    for n in 0..100 {
+    for n in 0..count {
         write!(text, "{}", STATION.replace('@', &n.to_string())).unwrap();
     }
     text.push_str("PROGRAM Main\nVAR start : BOOL; total : DINT;\n");
-    (0..100).for_each(|n| writeln!(text, "s{n} : Station{n};").unwrap());
+    (0..count).for_each(|n| writeln!(text, "s{n} : Station{n};").unwrap());
     text.push_str("END_VAR\ntotal := 0;\n");
-    for n in 0..100 {
+    for n in 0..count {
         writeln!(text, "s{n}(start := start, limit := {n});\ntotal := total + INT_TO_DINT(s{n}.full);").unwrap();
     }
     text.push_str("END_PROGRAM\n");
@@ -97,8 +104,8 @@ mean := Mean@(parts := parts);
 END_FUNCTION_BLOCK
 ";
 
-/// Every program, both ways at a time.
-pub fn measured() -> BTreeMap<String, Measured<2>> {
+/// Every program, two ways at a time.
+pub fn measured() -> BTreeMap<String, Measured<4>> {
     let mut measured = BTreeMap::new();
     for (name, dialect, texts) in subjects() {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("compiling").join(name);
@@ -106,10 +113,12 @@ pub fn measured() -> BTreeMap<String, Measured<2>> {
         let files: Vec<String> = (1..=texts.len()).map(|at| format!("program_{at}.st")).collect();
         files.iter().zip(&texts).for_each(|(file, text)| fs::write(folder.join(file), text).unwrap());
         link(&folder.join("staunch"));
-        let count = |before: &[&str]| Some(instructions(&folder, before, dialect, &files));
+        let count = |before: &[&str]| instructions(&folder, before, dialect, &files);
         let figures = std::thread::scope(|scope| {
-            let build = scope.spawn(|| count(&["build", "--emit", "rust", "-o", "program.rs"]));
-            [count(&["check"]), build.join().expect("it is measured")]
+            let rust = scope.spawn(|| count(&["build", "--emit", "rust", "-o", "program.rs"]));
+            let native = (name != LARGE).then(|| count(&["build", "--emit", "obj", "-o", "program.o"]));
+            let edited = (name == MEDIUM).then(|| edited(&folder, dialect, &files[0], &texts[0]));
+            [Some(count(&["check"])), Some(rust.join().expect("it is measured")), native, edited]
         });
         measured.insert(name.to_owned(), figures);
     }
@@ -117,12 +126,25 @@ pub fn measured() -> BTreeMap<String, Measured<2>> {
 }
 
 fn instructions(folder: &Path, before: &[&str], dialect: &str, files: &[String]) -> u64 {
+    let mut valgrind = counted(folder);
+    valgrind.args(before).args(["--quiet", "--dialect", dialect]).args(files);
+    of_report(&String::from_utf8_lossy(&succeeds(&mut valgrind).stderr))
+}
+
+fn edited(folder: &Path, dialect: &str, file: &str, text: &str) -> u64 {
+    let mut valgrind = counted(folder);
+    of_report(&editing::session(valgrind.args(["lsp", "--dialect", dialect]), &folder.join(file), text))
+}
+
+/// The command, under cachegrind.
+fn counted(folder: &Path) -> Command {
     let mut valgrind = Command::new(valgrind_path());
     valgrind.args(["--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null", "./staunch"]);
-    valgrind.args(before).args(["--quiet", "--dialect", dialect]).args(files).current_dir(folder);
-    valgrind.env_clear().env(ONE_MEMCPY.0, ONE_MEMCPY.1);
-    let output = succeeds(&mut valgrind);
-    let report = String::from_utf8_lossy(&output.stderr);
+    valgrind.current_dir(folder).env_clear().env(ONE_MEMCPY.0, ONE_MEMCPY.1);
+    valgrind
+}
+
+fn of_report(report: &str) -> u64 {
     let counted = report.lines().find_map(|line| line.rsplit_once(" refs:")).unwrap().1;
     counted.trim().replace(',', "").parse().unwrap()
 }

@@ -18,6 +18,7 @@
 
 mod compiling;
 mod driver;
+mod editing;
 mod executable;
 mod measure;
 mod page;

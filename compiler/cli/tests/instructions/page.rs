@@ -40,11 +40,13 @@ fn with(text: &str, start: &str, tables: &str) -> String {
     format!("{before}{start}\n{tables}\n{END}{after}")
 }
 
-fn compiling(table: &Table<2>) -> String {
-    let mut text = "| program | `check` | `build --emit rust` |\n|---|---:|---:|\n".to_owned();
+fn compiling(table: &Table<4>) -> String {
+    let mut text =
+        "| program | `check` | `build --emit rust` | `build --emit obj` | `lsp` |\n|---|---:|---:|---:|---:|\n"
+            .to_owned();
     for (name, row) in table {
-        let [check, build] = row.figures.map(|it| it.unwrap_or_default() as f64 / 1e6);
-        writeln!(text, "| {name} | {check:.1} | {build:.1} |").unwrap();
+        let figures = row.figures.map(|it| it.map(|it| format!("{:.1}", it as f64 / 1e6)).unwrap_or_default());
+        writeln!(text, "| {name} | {} |", figures.join(" | ")).unwrap();
     }
     text
 }

@@ -474,7 +474,8 @@ impl<'s> Checker<'_, 's> {
         if !names_storage {
             self.report(
                 Diagnostic::new(Code::E0306, expr.span, format!("`{name}` needs a variable"))
-                    .label("this is a value, and the call writes to this argument"),
+                    .label("this is a value, and the call writes to this argument")
+                    .help("assign the value to a variable, and give that variable"),
             );
             return None;
         }

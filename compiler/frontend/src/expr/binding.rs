@@ -42,7 +42,7 @@ impl<'n> Parameter<'n> {
     }
 
     pub fn of_formal(formal: &Formal<'n>) -> Self {
-        Self { name: formal.name.text, section: formal.section, meaning: Named::Declared(formal.name.span) }
+        Self { name: formal.name.text, section: formal.section, meaning: Named::Definition(formal.name.span) }
     }
 }
 

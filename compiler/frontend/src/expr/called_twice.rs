@@ -7,7 +7,7 @@ use super::migration::bare;
 use crate::spelling::Key;
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast, LiteralValue};
-use staunch_ir::{Place, Type};
+use staunch_ir::{BlockId, Place, Type};
 use staunch_runtime::PinRole;
 
 /// Blocks of TwinCAT's that know nothing of earlier calls.
@@ -98,7 +98,7 @@ pub(super) fn input<'a, 's>(ty: Type, arguments: &'a [ast::Argument<'s>], role: 
     let Type::Block(block) = ty else { return None };
     let position = block.info().inputs().position(|it| it.role == Some(role))?;
     let named = arguments.iter().find_map(|it| match &it.kind {
-        ArgumentKind::Input(name, value) if PinRole::named(name.text) == Some(role) => Some(value),
+        ArgumentKind::Input(name, value) if role_of(block, name.text) == Some(role) => Some(value),
         ArgumentKind::Input(..) | ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => None,
     });
     named.or_else(|| match &arguments.get(position)?.kind {
@@ -120,12 +120,24 @@ pub(super) fn only_resets(ty: Type, arguments: &[ast::Argument<'_>]) -> bool {
         ArgumentKind::Input(name, value) if name.text.eq_ignore_ascii_case("IN") => is_timer && is_bool(value, false),
         ArgumentKind::Input(name, _) if name.text.eq_ignore_ascii_case("PT") => is_timer,
         ArgumentKind::Input(name, _) => {
-            matches!(PinRole::named(name.text), Some(PinRole::Reset | PinRole::Load))
+            matches!(role_of_named(ty, name.text), Some(PinRole::Reset | PinRole::Load))
         }
         ArgumentKind::Positional(_) | ArgumentKind::Output { .. } => false,
     };
     let names_in = |it: &ast::Argument<'_>| matches!(&it.kind, ArgumentKind::Input(name, _) if !name.text.eq_ignore_ascii_case("PT"));
     arguments.iter().any(names_in) && arguments.iter().all(resets)
+}
+
+/// The role of what a call names: of a pin of the block, or of one that another system's block has.
+fn role_of(block: BlockId, name: &str) -> Option<PinRole> {
+    match block.info().pin(name) {
+        Some(pin) => pin.role,
+        None => PinRole::named(name),
+    }
+}
+
+fn role_of_named(ty: Type, name: &str) -> Option<PinRole> {
+    if let Type::Block(block) = ty { role_of(block, name) } else { PinRole::named(name) }
 }
 
 fn is_bool(expr: &ast::Expr<'_>, wanted: bool) -> bool {

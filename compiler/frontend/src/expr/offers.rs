@@ -17,13 +17,13 @@ impl<'s> Checker<'_, 's> {
         let scopes = std::iter::successors(Some(&self.scope), |it| it.outer.as_ref());
         for scope in scopes.flat_map(|it| [Some(it), it.constants.as_ref()]).flatten() {
             let own = scope.variables.iter().filter(|it| !it.name.text.starts_with("__"));
-            own.for_each(|it| log.offer(it.name.text, Named::Declared(it.name.span)));
+            own.for_each(|it| log.offer(it.name.text, Named::Definition(it.name.span)));
         }
         if let Some(slot) = self.slot {
             self.offer_routines(self.decl.home(slot));
             let pou = self.decl.pous[slot].ast;
             if pou.kind.is_function() {
-                log.offer(pou.name.text, Named::Declared(pou.name.span));
+                log.offer(pou.name.text, Named::Definition(pou.name.span));
             }
         }
         self.decl.offer_visible(name, sense);
@@ -40,7 +40,7 @@ impl<'s> Checker<'_, 's> {
             if let Some((slot, _)) = all.into_iter().flatten().next() {
                 let declared = self.decl.pous[slot].ast.name;
                 if !declared.text.starts_with("__") {
-                    self.decl.log.offer(key.0, Named::Declared(declared.span));
+                    self.decl.log.offer(key.0, Named::Definition(declared.span));
                 }
             }
         }
@@ -74,7 +74,7 @@ impl<'s> Checker<'_, 's> {
             let own = self.decl.field_named(id, name).map(|it| structure.fields[it.index()].location);
             let shared = || structure.overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name));
             if let Some(location) = own.or_else(|| Some(shared()?.location)) {
-                self.decl.log.offer_expected(name, Named::Declared(self.decl.log.name_at(location)));
+                self.decl.log.offer_expected(name, Named::Definition(self.decl.log.name_at(location)));
             }
         }
     }

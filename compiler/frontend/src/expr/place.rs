@@ -249,7 +249,7 @@ impl<'s> Checker<'_, 's> {
         let scope = self.scope.outer.as_ref().unwrap_or(&self.scope);
         if self.decl.log.is_asked(name.span) {
             let own = scope.variables.iter().map(|it| it.name).filter(|it| !it.text.starts_with("__"));
-            own.for_each(|it| self.decl.log.offer_expected(it.text, Named::Declared(it.span)));
+            own.for_each(|it| self.decl.log.offer_expected(it.text, Named::Definition(it.span)));
         }
         let Some(variable) = scope.get(name.text).cloned() else {
             // A METHOD that is inherited has been looked at before.
@@ -456,14 +456,13 @@ impl<'s> Checker<'_, 's> {
                 return None;
             }
             let owner = self.type_name(found.place.ty);
-            self.report(
-                Diagnostic::new(
-                    Code::E0109,
-                    name.span,
-                    format!("`{}` is an internal variable of `{owner}`", name.text),
-                )
-                .label("only inputs and outputs can be reached from outside"),
-            );
+            let message = format!("`{}` is an internal variable of `{owner}`", name.text);
+            let error = Diagnostic::new(Code::E0109, name.span, message)
+                .label("only inputs and outputs can be reached from outside");
+            let declared = self.decl.slot_of_instance(id).map(|it| self.decl.pous[it].ast.name.span.file);
+            let is_own = declared.is_some_and(|it| !self.decl.log.sources.get(it).is_bundled());
+            let help = "declare it in VAR_OUTPUT to read it from outside, or in VAR_INPUT to set it";
+            self.report(if is_own { error.help(help) } else { error });
             return None;
         }
         let access = match section {
@@ -759,7 +758,8 @@ impl<'s> Checker<'_, 's> {
             Access::Constant(name) => {
                 self.report(
                     Diagnostic::new(Code::E0501, span, format!("`{}` is a CONSTANT", name.text))
-                        .label("a constant cannot be assigned to"),
+                        .label("a constant cannot be assigned to")
+                        .help("assign to another variable, or delete CONSTANT where it is declared"),
                 );
                 false
             }

@@ -6,11 +6,11 @@ use rustc_hash::FxHashMap;
 use staunch_ir::{BlockId, Elementary, EnumId};
 use std::cell::{Cell, RefCell};
 
-/// What a name means.
+/// What a name means; `D` stands for what a source declares.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Meaning {
+pub enum Meaning<D = DefId> {
     /// What a source declares.
-    Definition(DefId),
+    Definition(D),
     /// A NAMESPACE, or a list of global variables, by its full name.
     Namespace(String),
     Elementary(Elementary),
@@ -28,24 +28,14 @@ pub enum Meaning {
     Word,
 }
 
-/// The same while declarations have no ids: by where their names are.
-#[derive(Clone, Debug)]
-pub(crate) enum Named {
-    Declared(Span),
-    Namespace(String),
-    Elementary(Elementary),
-    Block(BlockId),
-    Pin(BlockId, usize),
-    Function,
-    Parameter,
-    Instruction,
-    Word,
-}
+/// A meaning while declarations have no ids: a declaration is known by where its name is.
+pub(crate) type Named = Meaning<Span>;
 
 impl Named {
+    /// With the id of the declaration, if there is one.
     pub(super) fn meaning(self, known: impl Fn(Span) -> Option<DefId>) -> Option<Meaning> {
         Some(match self {
-            Self::Declared(name) => Meaning::Definition(known(name)?),
+            Self::Definition(name) => Meaning::Definition(known(name)?),
             Self::Namespace(name) => Meaning::Namespace(name),
             Self::Elementary(it) => Meaning::Elementary(it),
             Self::Block(it) => Meaning::Block(it),
@@ -67,11 +57,11 @@ pub(crate) struct Offered {
     pub is_expected: bool,
 }
 
-/// Notes what names mean. What is looked at more than once has the last meaning: a call's arguments are tried for each of
+/// Notes what names mean. The last note of a name counts: a call's arguments are tried for each of
 /// several FUNCTIONs before one is chosen.
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
-    /// Where a name is of which all is asked that it could be.
+    /// Where an editor asks for completion: the place of the name there.
     asked: Option<(u16, u32)>,
     offered: RefCell<Vec<Offered>>,
     uses: RefCell<FxHashMap<Span, Named>>,
@@ -82,12 +72,12 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// One that notes what a name at a place could be, too.
+    /// A recorder that also notes the candidates for the name at a place.
     pub fn asked(at: Option<(u16, u32)>) -> Self {
         Self { asked: at, ..Self::default() }
     }
 
-    /// Whether it is asked what a name could be that is here.
+    /// Whether completion is asked for at this name.
     pub fn is_asked(&self, name: Span) -> bool {
         self.asked == Some((name.file, name.start))
     }

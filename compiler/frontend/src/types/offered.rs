@@ -30,7 +30,7 @@ impl<'s> Declarations<'s> {
             return;
         }
         match it {
-            Visible::Declared(entry) => self.log.offer(text, Named::Declared(self.span_of(entry))),
+            Visible::Declared(entry) => self.log.offer(text, Named::Definition(self.span_of(entry))),
             Visible::Space(space) => self.log.offer(text, Named::Namespace(self.names.name_of(space).to_owned())),
         }
     }
@@ -45,14 +45,14 @@ impl<'s> Declarations<'s> {
     pub fn offer_enumerators(&self, id: EnumId) {
         for it in &self.program.enumeration(id).values {
             if let Some(declared) = self.log.index.as_ref().and_then(|index| index.enumerator(id, &it.name)) {
-                self.log.offer_expected(&it.name, Named::Declared(declared));
+                self.log.offer_expected(&it.name, Named::Definition(declared));
             }
         }
     }
 
     pub fn offer_enumerator(&self, name: &str, id: EnumId) {
         if let Some(declared) = self.log.index.as_ref().and_then(|it| it.enumerator(id, name)) {
-            self.log.offer(name, Named::Declared(declared));
+            self.log.offer(name, Named::Definition(declared));
         }
     }
 

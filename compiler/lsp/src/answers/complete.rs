@@ -6,8 +6,8 @@ use crate::project::{Analysis, Documents, Project};
 use gen_lsp_types::{
     CompletionItem, CompletionItemKind, Documentation, InsertTextFormat, MarkupContent, MarkupKind, Position,
 };
-use staunch_frontend::{DefinitionKind, Meaning, Offer, Source};
-use staunch_syntax::lex::lex;
+use staunch_frontend::{DefinitionKind, Meaning, Offer, Source, format};
+use staunch_syntax::lex::{Kind, lex};
 use std::path::Path;
 
 /// What nobody calls anything.
@@ -24,9 +24,17 @@ pub fn complete(project: &mut Project, documents: &Documents, path: &Path, posit
         return Vec::new();
     }
     let is_member = document[..start].trim_end().ends_with('.');
-    let text = with_name(&document, start, at);
-    let found = project.offers(documents, file, &text, count(start));
-    let mut items: Vec<_> = found.index.offers.iter().filter(|it| it.name != HERE).map(|it| item(&found, it)).collect();
+    let mut offered = |text: &str, is_wanted: fn(&Offer) -> bool| -> Vec<_> {
+        let found = project.offers(documents, file, text, count(start));
+        let offers = found.index.offers.iter().filter(|it| it.name != HERE && is_wanted(it));
+        offers.map(|it| item(&found, it)).collect()
+    };
+    let mut items = offered(&with_name(&document, start, at, ";"), |_| true);
+    if may_be_label(&document, start) {
+        let mut labels = offered(&with_name(&document, start, at, ": ;"), |it| it.is_expected);
+        items.retain(|it| labels.iter().all(|label| label.label != it.label));
+        items.append(&mut labels);
+    }
     if !is_member && !document[..start].trim_end().ends_with(['#', '%']) {
         items.extend(words(typed));
     }
@@ -43,17 +51,26 @@ fn word_before(text: &str, at: u32) -> (usize, &str) {
     (start, &before[start..])
 }
 
-/// The document with a name in place of what is typed of one, and what a statement lacks behind it.
-fn with_name(text: &str, start: usize, at: u32) -> String {
+/// Whether a name that begins a line may be a label: the innermost block around it is a CASE.
+fn may_be_label(text: &str, start: usize) -> bool {
+    let begins_line = text[..start].rsplit('\n').next().is_some_and(|it| it.trim().is_empty());
+    let around = || format::block_ranges(text).into_iter().filter(|it| it.start < start && start <= it.end);
+    let innermost = || around().min_by_key(|it| it.end - it.start);
+    let is_case = |start: usize| text.get(start..start + 4).is_some_and(|it| it.eq_ignore_ascii_case("CASE"));
+    begins_line && innermost().is_some_and(|it| is_case(it.start))
+}
+
+/// The document with a name in place of the one that is being typed, followed by what its statement lacks, with its end.
+fn with_name(text: &str, start: usize, at: u32, end_of_statement: &str) -> String {
     let end = usize::try_from(at).unwrap_or(usize::MAX).min(text.len());
     let rest = &text[end..];
     let tail = rest.find(|it: char| !(it.is_alphanumeric() || it == '_')).unwrap_or(rest.len());
     let rest = &rest[tail..];
     let line = rest.lines().next().unwrap_or_default();
-    // In brackets that are open the statement goes on; a name alone ends with its line.
+    // Brackets that are open are closed; a statement that is a name alone ends with its line.
     let before = text[..start].rsplit(['\n', ';']).next().unwrap_or_default();
     let depth = before.matches('(').count().saturating_sub(before.matches(')').count());
-    let close = if line.trim().is_empty() { ")".repeat(depth) + ";" } else { String::new() };
+    let close = if line.trim().is_empty() { ")".repeat(depth) + end_of_statement } else { String::new() };
     format!("{}{HERE}{close}{rest}", &text[..start])
 }
 
@@ -62,7 +79,7 @@ fn is_aside(source: &Source, place: Option<Place>) -> bool {
     let Some(place) = place else { return true };
     let tokens = lex(place.file, &source.text);
     let at = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
-    // A comment to the end of its line goes on there.
+    // The end of its line is still in a `//` comment.
     let is_of_line = |start: u32| source.text.get(at(start)..).is_some_and(|it| it.starts_with("//"));
     let holds =
         |it: &(u32, u32)| it.0 < place.offset && (place.offset < it.1 || place.offset == it.1 && is_of_line(it.0));
@@ -140,9 +157,6 @@ const SNIPPETS: [(&str, &str); 12] = [
     ("STRUCT", "STRUCT\n\t${1:name} : ${2:BOOL};$0\nEND_STRUCT"),
 ];
 
-const WORDS: [&str; 13] =
-    ["AND", "EXIT", "CONTINUE", "RETURN", "ELSE", "ELSIF", "THEN", "MOD", "NOT", "OR", "XOR", "TRUE", "FALSE"];
-
 /// Keywords; nothing where letters are typed that none of them has.
 fn words(typed: &str) -> Vec<CompletionItem> {
     let begins = |it: &str| it.get(..typed.len()).is_some_and(|it| it.eq_ignore_ascii_case(typed));
@@ -154,8 +168,9 @@ fn words(typed: &str) -> Vec<CompletionItem> {
         sort_text: Some(format!("4{word}")),
         ..CompletionItem::default()
     });
-    let plain = WORDS.iter().filter(|it| begins(it)).map(|word| CompletionItem {
-        label: (*word).to_owned(),
+    let plain = Kind::keywords().map(|it| it.0).filter(|it| begins(it) && !SNIPPETS.iter().any(|known| known.0 == *it));
+    let plain = plain.map(|word| CompletionItem {
+        label: word.to_owned(),
         kind: Some(CompletionItemKind::Keyword),
         sort_text: Some(format!("5{word}")),
         ..CompletionItem::default()

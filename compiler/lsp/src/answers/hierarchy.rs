@@ -88,13 +88,23 @@ fn around(analysis: &Analysis, at: Span) -> Option<DefId> {
     all.min_by_key(|(_, it)| it.extent.end - it.extent.start).map(|it| it.0)
 }
 
+/// What `SUPER^()` calls in a POU: the body of the block that its own one extends.
+fn base(analysis: &Analysis, caller: DefId) -> Option<DefId> {
+    let class = analysis.index.get(caller).owner.unwrap_or(caller);
+    analysis.bases(class).into_iter().find(|it| is_called(analysis, *it))
+}
+
 fn all(analysis: &Analysis) -> Vec<Call> {
     let mut found = Vec::new();
     for (source, file) in analysis.sources.files().iter().zip(0u16..) {
         for call in calls(file, &source.text) {
-            let meant = analysis.index.at(file, call.name.start);
-            let Some((_, Meaning::Definition(id))) = meant else { continue };
-            if let (Some(callee), Some(caller)) = (target(analysis, id), around(analysis, call.name)) {
+            let Some(caller) = around(analysis, call.name) else { continue };
+            let callee = match analysis.index.at(file, call.name.start) {
+                Some((_, Meaning::Definition(id))) => target(analysis, id),
+                _ if analysis.sources.text(call.name).eq_ignore_ascii_case("SUPER") => base(analysis, caller),
+                _ => None,
+            };
+            if let Some(callee) = callee {
                 // A POU's own name before its bracket is its head.
                 if analysis.index.get(callee).name != call.name {
                     found.push(Call { caller, callee, at: call.name });
@@ -111,21 +121,26 @@ pub fn prepare_calls(analysis: &Analysis, place: Place) -> Option<CallHierarchyI
 }
 
 pub fn incoming(analysis: &Analysis, of: Place) -> Vec<CallHierarchyIncomingCall> {
-    let Some(of) = analysis.definition_at(of) else { return Vec::new() };
-    let grouped = grouped(all(analysis).into_iter().filter(|it| it.callee == of).map(|it| (it.caller, it.at)));
-    let shown = grouped.into_iter().filter_map(|(id, places)| {
-        let from_ranges = places.into_iter().map(|it| analysis.range(it)).collect();
-        Some(CallHierarchyIncomingCall { from: call_item(analysis, id)?, from_ranges })
-    });
-    shown.collect()
+    let others = others(analysis, of, |it| (it.callee, it.caller)).into_iter();
+    others.map(|(from, from_ranges)| CallHierarchyIncomingCall { from, from_ranges }).collect()
 }
 
 pub fn outgoing(analysis: &Analysis, of: Place) -> Vec<CallHierarchyOutgoingCall> {
+    let others = others(analysis, of, |it| (it.caller, it.callee)).into_iter();
+    others.map(|(to, from_ranges)| CallHierarchyOutgoingCall { to, from_ranges }).collect()
+}
+
+/// What is at the other end of the calls of a POU, with the places of the calls. `ends` gives this end first.
+fn others(
+    analysis: &Analysis,
+    of: Place,
+    ends: impl Fn(&Call) -> (DefId, DefId),
+) -> Vec<(CallHierarchyItem, Vec<Range>)> {
     let Some(of) = analysis.definition_at(of) else { return Vec::new() };
-    let grouped = grouped(all(analysis).into_iter().filter(|it| it.caller == of).map(|it| (it.callee, it.at)));
+    let own = all(analysis).into_iter().filter(|it| ends(it).0 == of);
+    let grouped = grouped(own.map(|it| (ends(&it).1, it.at)));
     let shown = grouped.into_iter().filter_map(|(id, places)| {
-        let from_ranges = places.into_iter().map(|it| analysis.range(it)).collect();
-        Some(CallHierarchyOutgoingCall { to: call_item(analysis, id)?, from_ranges })
+        Some((call_item(analysis, id)?, places.into_iter().map(|it| analysis.range(it)).collect()))
     });
     shown.collect()
 }

@@ -17,7 +17,7 @@ pub fn part(path: &str, text: &str, style: &Style, within: Range) -> Vec<TextEdi
     let Ok(after) = format::bytes(path, text.as_bytes(), style) else { return Vec::new() };
     let Ok(after) = String::from_utf8(after) else { return Vec::new() };
     let (old, new): (Vec<_>, Vec<_>) = (text.split_inclusive('\n').collect(), after.split_inclusive('\n').collect());
-    // A line is told by its place only where none was added or taken away.
+    // A line keeps its number only where none was added or removed.
     if old.len() != new.len() {
         return Vec::new();
     }
@@ -50,14 +50,6 @@ fn changed(before: &str, after: &str) -> Vec<TextEdit> {
     let start: usize = old[..same].iter().map(|it| it.len()).sum();
     let stop = before.len() - old[old.len() - end..].iter().map(|it| it.len()).sum::<usize>();
     let document = Source::new("", before.to_owned());
-    let range = Range { start: at(&document, start), end: at(&document, stop) };
+    let range = Range { start: position(&document, count(start)), end: position(&document, count(stop)) };
     vec![TextEdit { range, new_text: new[same..new.len() - end].concat() }]
-}
-
-/// A place that may be behind the last line break of a document.
-fn at(document: &Source, offset: usize) -> gen_lsp_types::Position {
-    let text = &document.text[..offset];
-    let line = text.matches('\n').count();
-    let start = text.rfind('\n').map_or(0, |it| it + 1);
-    gen_lsp_types::Position { line: count(line), character: count(text[start..].encode_utf16().count()) }
 }

@@ -125,7 +125,7 @@ pub fn mentions(analysis: &Analysis, id: DefId, with_declaration: bool) -> Vec<S
 
 pub fn references(analysis: &Analysis, place: Place, with_declaration: bool) -> Vec<Location> {
     let Some(id) = analysis.definition_at(place) else {
-        // What nobody declares is used all the same: a standard block.
+        // A standard block has uses and no declaration.
         let Some((_, meaning)) = analysis.at(place) else { return Vec::new() };
         let same = analysis.index.uses.iter().filter(|it| it.meaning == meaning && meaning != Meaning::Word);
         return same.filter_map(|it| analysis.location(it.span)).collect();

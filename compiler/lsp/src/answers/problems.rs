@@ -4,7 +4,7 @@ use crate::project::Analysis;
 use gen_lsp_types::{
     Code, CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Message,
 };
-use staunch_frontend::{Levels, Severity};
+use staunch_frontend::{Code as Lint, Levels, Severity};
 
 const PAGES: &str = "https://github.com/staunch-lang/staunch/blob/main/docs/diagnostics.md";
 
@@ -23,7 +23,8 @@ pub fn shown(analysis: &Analysis, it: &staunch_frontend::Diagnostic) -> Diagnost
     let lines = [Some(it.message.clone()), it.label.clone()].into_iter().flatten();
     let notes = it.notes.iter().map(|it| format!("note: {it}")).chain(it.help.as_ref().map(|it| format!("help: {it}")));
     let text: Vec<_> = lines.chain(notes).collect();
-    let is_unused = matches!(it.code.name(), "W0501" | "W0506" | "W0507");
+    // An editor fades what could be deleted.
+    let is_unused = matches!(it.code, Lint::W0501 | Lint::W0502);
     Diagnostic {
         range: analysis.range(it.span),
         severity: Some(match it.severity {

@@ -63,7 +63,7 @@ fn capabilities() -> ServerCapabilities {
             full: Some(Full::Bool(true)),
             ..SemanticTokensOptions::default()
         })),
-        // Diagnostics are sent by themselves, and given to who asks: an editor that is told of both shows each twice.
+        // Diagnostics are pushed, and a pull request is answered, too. An editor that knows of both would show each twice.
         diagnostic_provider: None,
         ..ServerCapabilities::default()
     }

@@ -36,6 +36,14 @@ pub fn part(text: &str, style: &Style) -> Option<String> {
     says_the_same(&tokens, &token::read(&laid_out)).then_some(laid_out)
 }
 
+/// The blocks of a text that are closed, each from its first word to its last: `IF` to `END_IF`.
+pub fn block_ranges(text: &str) -> Vec<core::ops::Range<usize>> {
+    let tokens = token::read(text);
+    // Each token is a part of the text.
+    let start = |at: usize| tokens[at].text.as_ptr().addr() - text.as_ptr().addr();
+    blocks::Blocks::of(&tokens).pairs.iter().map(|it| start(it.open)..start(it.close)).collect()
+}
+
 /// For each token the next one that is not a comment; comments at the end of the text are left out.
 fn next_code(tokens: &[Token<'_>]) -> Vec<usize> {
     let last = tokens.iter().rposition(|it| !it.is_aside());

@@ -3,7 +3,7 @@
 use chumsky::prelude::*;
 
 use crate::{
-    ast::{Access, Construction, Edge, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
+    ast::{Access, Construction, Edge, Initial, Name, TypeKind, TypeSpec, VarBlock, VarDecl, VarKind},
     lex::Kind,
     source::Span,
 };
@@ -21,7 +21,7 @@ use super::{
     pragma::{instance_path_here, starts_at_calls_here},
     recovery,
     token_class::ends_declarations,
-    types::type_kind,
+    types::{self, type_kind},
 };
 
 /// From VAR to END_VAR. None for a section that is refused, and for VAR_ACCESS.
@@ -136,6 +136,10 @@ pub fn type_spec<'t, 's: 't>() -> impl Rule<'t, 's, TypeSpec<'s>> {
 }
 
 fn read_type<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<TypeSpec<'s>> {
+    if types::is_plain(input) {
+        let name = input.name()?;
+        return Ok(TypeSpec { kind: TypeKind::Named(vec![name]), span: name.span });
+    }
     let structure = token(Kind::Struct).then(rule(|input| Ok(structure_members(input)))).map(|(_, it)| it);
     let kind = choice((structure, union(), type_kind(type_spec())));
     input.parse(nested(kind).map_with(|kind, extra| {
@@ -219,12 +223,19 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
     let (instance_path, starts_at_calls) = (instance_path_here(input), starts_at_calls_here(input));
     // What is at an address needs no other name.
     let nameless = input.kind() == Kind::At;
-    if !nameless {
+    // Most declarations have one name, and no address.
+    let is_usual = input.kind() == Kind::Name && input.kind_ahead(1) == Kind::Colon;
+    if is_usual {
+        names.push(input.name()?);
+    } else if !nameless {
         let (name, more) = input.parse(declared_names())?;
         names.push(name);
         names.extend(more);
     }
-    let (address, swapped) = input.parse(address(!nameless).then(foreign_types::type_before_name(names)))?;
+    let (address, swapped) = match is_usual {
+        true => (None, None),
+        false => input.parse(address(!nameless).then(foreign_types::type_before_name(names)))?,
+    };
     if nameless {
         names.extend(address);
     }
@@ -233,7 +244,7 @@ pub fn declaration<'s>(input: &mut In<'_, '_, 's>, names: &mut Vec<Name<'s>>) ->
             *names = named.names;
             (((named.ty, None), (None, None)), input.parse(optional_initial().then_ignore(end()))?)
         }
-        None => input.parse(typed().then(optional_initial()).then_ignore(end()))?,
+        None => (read_typed(input)?, initial_to_end(input)?),
     };
     let doc = input.doc(first);
     if let Some(late) = late {
@@ -255,16 +266,42 @@ fn declared_names<'t, 's: 't>() -> impl Rule<'t, 's, (Name<'s>, Vec<Name<'s>>)> 
 type After<'s> = (Option<(Edge, Span)>, Option<(Span, Name<'s>)>);
 type Typed<'s> = ((TypeSpec<'s>, Option<Box<Construction<'s>>>), After<'s>);
 
-/// `: BOOL R_EDGE`; in OpenPLC Editor `: BOOL AT %QX0.0`, too
-fn typed<'t, 's: 't>() -> impl Rule<'t, 's, Typed<'s>> {
+/// `R_EDGE`; in OpenPLC Editor `AT %QX0.0`, too
+fn after_type<'t, 's: 't>() -> impl Rule<'t, 's, After<'s>> {
     // These two are names everywhere else.
     let rising = word("R_EDGE").map(|span| (Edge::Rising, span));
     let falling = word("F_EDGE").map(|span| (Edge::Falling, span));
-    let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_declaration());
     let late = token(Kind::At).then(direct_address().or(alias()));
-    let after = rising.or(falling).or_not().then(late.or_not());
+    rising.or(falling).or_not().then(late.or_not())
+}
+
+/// `: BOOL R_EDGE`, whose colon may be forgotten
+fn typed<'t, 's: 't>() -> impl Rule<'t, 's, Typed<'s>> {
+    let colon = token(Kind::Colon).ignored().or(foreign_types::no_colon_in_declaration());
+    let after = after_type();
     let usual = ahead(|input| matches!(input.kind(), Kind::Semicolon | Kind::Assign)).to((None, None));
     colon.ignore_then(type_spec().then(rule(construction))).then(usual.or(after))
+}
+
+/// The same; mostly a type alone.
+fn read_typed<'t, 's: 't>(input: &mut In<'t, '_, 's>) -> Parsed<Typed<'s>> {
+    if input.kind() != Kind::Colon {
+        return input.parse(typed());
+    }
+    input.take();
+    let ty = read_type(input)?;
+    let construction = construction(input)?;
+    let is_alone = matches!(input.kind(), Kind::Semicolon | Kind::Assign);
+    let after = if is_alone { (None, None) } else { input.parse(after_type())? };
+    Ok(((ty, construction), after))
+}
+
+/// The initial value, if there is one, and the `;`.
+fn initial_to_end<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Option<Initial<'s>>> {
+    if input.eat(Kind::Semicolon).is_some() {
+        return Ok(None);
+    }
+    input.parse(optional_initial().then_ignore(end()))
 }
 
 /// `(5)` after the type of an instance, `[(5), (6)]` after that of an array of them.

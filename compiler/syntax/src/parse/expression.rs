@@ -527,6 +527,7 @@ fn atom<'s>(input: &mut In<'_, '_, 's>) -> Parsed<Expr<'s>> {
             let operand = postfix(input)?;
             return Ok(foreign_expression::without_parentheses(input, span, &operand));
         }
+        Kind::Name if foreign_expression::quoted_number(input) => ExprKind::Error(Vec::new()),
         Kind::Name => ExprKind::Name(input.name()?),
         // The functions of these names: `AND(a, b, c)`.
         Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not if input.kind_ahead(1) == Kind::OpenParen => {

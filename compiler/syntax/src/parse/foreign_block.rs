@@ -32,7 +32,8 @@ pub fn skip(input: &mut In<'_, '_, '_>) -> bool {
         (Kind::For, Kind::Name) if is_word(input, 1, "EACH") => each(input),
         (Kind::If | Kind::While | Kind::For, _) => of_python(input) || of_ada(input),
         (Kind::Exit, Kind::Name) => exit_when(input),
-        (Kind::Name, Kind::Name | Kind::Integer) if input.is_word("SWITCH") => switch(input),
+        (Kind::Name, Kind::Name | Kind::Integer) if input.is_word("SWITCH") => switch(input, "SWITCH"),
+        (Kind::Name, Kind::Name | Kind::Integer) if input.is_word("MATCH") => switch(input, "MATCH"),
         (Kind::Name, Kind::Name) if input.is_word("FOREACH") => each(input),
         (Kind::Name, Kind::OpenParen) if input.is_word("SWITCH") => in_braces(input, refuse_switch),
         (Kind::Name, Kind::OpenParen) if input.is_word("FOREACH") => in_braces(input, refuse_each),
@@ -160,7 +161,7 @@ fn end_of_loop(input: &mut In<'_, '_, '_>, from: usize) -> Option<usize> {
     None
 }
 
-/// `LOOP … EXIT WHEN x > 5; … END LOOP;`
+/// `LOOP … EXIT WHEN x > 5; … END LOOP;`, `loop { … }`
 fn endless(input: &mut In<'_, '_, '_>) -> bool {
     let is_used = matches!(
         input.kind_ahead(1),
@@ -168,6 +169,17 @@ fn endless(input: &mut In<'_, '_, '_>) -> bool {
     );
     if is_used {
         return false;
+    }
+    if has_braces(input, 1) {
+        let word = input.here();
+        refuse(
+            input,
+            word,
+            "Structured Text has no LOOP",
+            "write `WHILE TRUE DO … IF x > 5 THEN EXIT; END_IF … END_WHILE`",
+        );
+        input.take();
+        return true;
     }
     let Some(count) = end_of_loop(input, 1) else { return false };
     let mut depth = 1usize;
@@ -311,8 +323,8 @@ fn repeated(input: &mut In<'_, '_, '_>) -> Option<usize> {
     None
 }
 
-/// `SWITCH x … END_SWITCH`, `switch x { … }`
-fn switch(input: &mut In<'_, '_, '_>) -> bool {
+/// `SWITCH x … END_SWITCH`, `switch x { … }`, `match x { … }`
+fn switch(input: &mut In<'_, '_, '_>, name: &str) -> bool {
     let end = rest_of_line(input);
     if has_kind(input, end, &[Kind::Of, Kind::Assign, Kind::Semicolon]) {
         return false;
@@ -324,7 +336,7 @@ fn switch(input: &mut In<'_, '_, '_>) -> bool {
     };
     let Some(count) = block_to(input, end, ends) else { return false };
     let value = written(input, 1, end);
-    refuse_choice(input, "SWITCH", value.as_deref());
+    refuse_choice(input, name, value.as_deref());
     skip_tokens(input, count);
     true
 }

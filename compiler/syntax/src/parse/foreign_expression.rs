@@ -57,6 +57,38 @@ pub fn cast_after(input: &mut In<'_, '_, '_>, value: &mut Expr<'_>) {
     *value = Expr { kind: ExprKind::Error(Vec::new()), span: whole };
 }
 
+/// What other languages write before the quoted digits of a number, and its base.
+const BASES: [(&str, u32); 4] = [("H", 16), ("X", 16), ("O", 8), ("B", 2)];
+
+/// Refuses `H'FF'`, a number of base 16, and passes over it, if it is here.
+pub fn quoted_number(input: &mut In<'_, '_, '_>) -> bool {
+    if !matches!(input.kind_ahead(1), Kind::Text | Kind::WideText) {
+        return false;
+    }
+    let at = input.number();
+    let (word, quoted) = (input.here(), input.state().place(at + 1));
+    let letter = input.text(word);
+    let digits = input.text(quoted).trim_matches(['\'', '"']).to_ascii_uppercase();
+    let base = BASES.iter().find(|it| it.0.eq_ignore_ascii_case(letter)).map(|it| it.1);
+    let Some(base) = base.filter(|base| !digits.is_empty() && digits.chars().all(|it| it.is_digit(*base))) else {
+        return false;
+    };
+    if word.end != quoted.start {
+        return false;
+    }
+    let whole = word.to(quoted);
+    let (own, meant) = (input.text(whole), format!("{base}#{digits}"));
+    input.report(
+        Diagnostic::new(Code::E0006, whole, format!("`{own}` is not a number"))
+            .label(format!("expected `{meant}`"))
+            .help(format!("a number of base {base} is written `{meant}`"))
+            .fix(whole, meant),
+    );
+    input.take();
+    input.take();
+    true
+}
+
 /// Whether `ADR n` is here: a function and its one operand, which have no parentheses.
 pub fn lacks_parentheses(input: &mut In<'_, '_, '_>) -> bool {
     // Each name is looked at: what follows decides first.

@@ -98,11 +98,19 @@ pub fn report_bound<'s>(state: &mut State<'_, 's>, low: &Expr<'s>, high: Option<
             diagnostics::array_bounds(low.span, "`-`", &meant).fix(low.span, meant)
         }
         (None, _) => {
-            let meant = format!("1..{text}");
+            let meant = bounds_of_length(text);
             diagnostics::array_bounds(low.span, "one number", &meant).fix(low.span, meant)
         }
     };
     state.report(it);
+}
+
+/// The bounds of an array of so many elements, as it is in languages that write its length: the first has the index 0.
+fn bounds_of_length(length: &str) -> String {
+    match length.parse::<u64>() {
+        Ok(0) | Err(_) => format!("0..{length} - 1"),
+        Ok(length) => format!("0..{}", length - 1),
+    }
 }
 
 /// No `,` between two enumerators.
@@ -133,7 +141,7 @@ pub fn length<'t, 's: 't>() -> impl Rule<'t, 's, ()> {
         }
         let bounds = match high {
             Some(high) => state.slice(length.span.to(high.span)).to_owned(),
-            None => format!("1..{}", state.slice(length.span)),
+            None => bounds_of_length(state.slice(length.span)),
         };
         let meant = format!("ARRAY[{bounds}] OF {}", state.slice(element));
         let whole = element.to(state.span(tokens));

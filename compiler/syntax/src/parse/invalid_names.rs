@@ -43,10 +43,13 @@ pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
 /// A reserved word directly after `a.` is a member: `machine.Configuration`.
 fn members(tokens: &mut Tokens<'_>) {
     for at in 2..tokens.kinds.len() {
-        let [owner, dot, word] = [at - 2, at - 1, at].map(|it| tokens.kinds[it]);
-        let is_owner = matches!(owner, Kind::Name | Kind::CloseBracket | Kind::CloseParen | Kind::Caret);
+        // Few tokens are points.
+        if tokens.kinds[at - 1] != Kind::Dot || tokens.kinds[at].keyword().is_none() {
+            continue;
+        }
+        let is_owner = matches!(tokens.kinds[at - 2], Kind::Name | Kind::CloseBracket | Kind::CloseParen | Kind::Caret);
         let is_joined = |it: usize| tokens.places[it].1 == tokens.places[it + 1].0;
-        if is_owner && dot == Kind::Dot && word.keyword().is_some() && is_joined(at - 2) && is_joined(at - 1) {
+        if is_owner && is_joined(at - 2) && is_joined(at - 1) {
             tokens.kinds[at] = Kind::Name;
         }
     }
@@ -126,8 +129,8 @@ fn declarations(tokens: &Tokens<'_>, found: &mut Found<'_>) {
             Kind::Semicolon => fresh = !open.is_empty(),
             Kind::Constant | Kind::Retain | Kind::NonRetain | Kind::Persistent => {}
             Kind::Comma => fresh = names,
-            // `PROPERTY Program : INT`
-            Kind::Name if is_before_name(tokens, at, found.text) => {
+            // `PROPERTY Program : INT`: few names have a wrong one after them.
+            Kind::Name if pieces(tokens, at + 1).is_some() && is_before_name(tokens, at, found.text) => {
                 at += declared(tokens, at + 1, found).unwrap_or_default();
                 fresh = false;
             }

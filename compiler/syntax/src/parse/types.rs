@@ -22,7 +22,6 @@ use super::{
 /// `spec` is the type of an element, or of what a reference refers to.
 pub fn type_kind<'t, 's: 't>(spec: impl Rule<'t, 's, TypeSpec<'s>>) -> impl Rule<'t, 's, TypeKind<'s>> {
     choice((
-        plain(),
         array(spec.clone()),
         enumeration().then(name().or_not()).map(|(values, base)| TypeKind::Enum { base, values }),
         reference(spec),
@@ -33,10 +32,10 @@ pub fn type_kind<'t, 's: 't>(spec: impl Rule<'t, 's, TypeSpec<'s>>) -> impl Rule
     ))
 }
 
-/// A name and nothing else: most types are that, so it is tried first.
-fn plain<'t, 's: 't>() -> impl Rule<'t, 's, TypeKind<'s>> {
-    let alone = ahead(|input| matches!(input.kind_ahead(1), Kind::Semicolon | Kind::Assign) && !is_string(input));
-    alone.ignore_then(name()).map(|it| TypeKind::Named(vec![it]))
+/// Whether a name and nothing else is here: most types are that.
+pub fn is_plain(input: &mut In<'_, '_, '_>) -> bool {
+    let is_alone = input.kind() == Kind::Name && matches!(input.kind_ahead(1), Kind::Semicolon | Kind::Assign);
+    is_alone && !is_string(input)
 }
 
 fn is_string(input: &mut In<'_, '_, '_>) -> bool {

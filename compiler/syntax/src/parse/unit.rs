@@ -236,6 +236,7 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
             (Modifiers::default(), Name { text: "", span: opened }, (Vec::new(), Vec::new()), None, None)
         });
     let span = opened.to(name.span);
+    second_word_of_name(input, name);
     if kind != PouKind::Function && input.kind() == Kind::Colon {
         let from = input.take();
         let _ = input.parse(type_spec());
@@ -279,6 +280,28 @@ fn pou<'s>(input: &mut In<'_, '_, 's>, kind: PouKind, end: Kind) -> Item<'s> {
         report_parts_of_class(input, &mut pou);
     }
     Item::Pou(pou)
+}
+
+/// `PROGRAM My Program`: takes a word that is between the name and the end of the line.
+fn second_word_of_name(input: &mut In<'_, '_, '_>, name: Name<'_>) {
+    let is_word = input.kind() == Kind::Name || opens_item(input.kind());
+    if name.text.is_empty() || !is_word || input.on_new_line() || routine::begins(input).is_some() {
+        return;
+    }
+    let at = input.number();
+    let (word, next) = (input.here(), input.state().place(at + 1));
+    if !input.state().breaks(word.end, next.start) {
+        return;
+    }
+    input.take();
+    let whole = name.span.to(word);
+    let meant = format!("{}_{}", name.text, input.text(word));
+    input.report(
+        Diagnostic::new(Code::E0001, whole, "a name has no spaces")
+            .label("these are two words")
+            .help(format!("write `{meant}`"))
+            .fix(whole, meant),
+    );
 }
 
 /// `END_PROGRAM Main`: takes the name.
