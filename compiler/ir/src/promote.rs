@@ -32,7 +32,7 @@ use crate::{
     Block, Const, Expr, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type,
     Value,
 };
-use local::{MOST_LOCALS, name};
+use local::{MOST_LOCALS, name, private_head};
 use pointed::directly;
 use read_once::read_once;
 use set_first::is_set_first;
@@ -313,13 +313,6 @@ fn is_plain(kind: &StatementKind) -> bool {
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Stop(_)
         | StatementKind::Fault(_) => false,
-    }
-}
-
-fn private_head(statement: &Statement) -> Option<For> {
-    match &statement.kind {
-        StatementKind::For(it) if it.is_private => Some(For { body: Vec::new(), ..(**it).clone() }),
-        _ => None,
     }
 }
 

@@ -39,6 +39,7 @@ mod turns;
 mod unrolled;
 
 mod block_loop;
+mod by_table;
 mod byte_copy;
 mod call;
 mod case;

@@ -36,7 +36,8 @@ impl<'p> Function<'_, 'p> {
     }
 
     pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Flow {
-        if let Some(flow) = self.copied(it, at).or_else(|| self.block_at_once(it, at)) {
+        let whole = self.copied(it, at).or_else(|| self.block_at_once(it, at));
+        if let Some(flow) = whole.or_else(|| self.looked_up_by_table(it, at)) {
             return flow;
         }
         let opens = self.open_turns(&[&it.body]);

@@ -31,6 +31,7 @@ const MOST_HANDED: usize = 4096;
 
 pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
     merge(function);
+    reuse_sums(function);
     let blocks: Vec<Block> = function.layout.blocks().collect();
     for block in &blocks {
         constants_near(function, *block);
@@ -49,7 +50,7 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
             shared.into_iter().rev().for_each(|it| handed.hand(function, block, it));
         }
     }
-    handed.rename(function);
+    rename(function, &handed.names, &handed.jumps);
 }
 
 /// Results that are handed to a block of their own.
@@ -73,19 +74,6 @@ impl Handed {
         function.layout.append_inst(jump, block);
         self.names.insert(value, name);
         self.jumps.insert(jump);
-    }
-
-    fn rename(self, function: &mut Function) {
-        if self.names.is_empty() {
-            return;
-        }
-        let blocks: Vec<Block> = function.layout.blocks().collect();
-        for block in blocks {
-            let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
-            for inst in instructions.into_iter().filter(|it| !self.jumps.contains(it)) {
-                function.dfg.map_inst_values(inst, |it| self.names.get(&it).copied().unwrap_or(it));
-            }
-        }
     }
 }
 
@@ -116,6 +104,66 @@ fn only_next(function: &Function, flow: &ControlFlowGraph, block: Block) -> Opti
     let is_other = next != block && function.layout.entry_block() != Some(next);
     let is_alike = function.layout.is_cold(block) == function.layout.is_cold(next);
     (is_only && is_other && is_alike).then_some((jump, next))
+}
+
+/// In a block that one other leads to, a sum with a constant that the other hands on is the same value, and not computed again: the
+/// optimiser does that so that no register holds it, but in a loop two would hold the counter, before and after its step.
+fn reuse_sums(function: &mut Function) {
+    let flow = ControlFlowGraph::with_function(function);
+    let mut names = HashMap::new();
+    let blocks: Vec<Block> = function.layout.blocks().collect();
+    for block in blocks {
+        let mut ways = flow.pred_iter(block);
+        let (Some(way), None) = (ways.next(), ways.next()) else { continue };
+        let known = handed_on(function, way.inst).into_iter().filter_map(|it| Some((sum(function, it)?, it)));
+        let known: HashMap<Sum, Value> = known.filter(|it| function.layout.inst_block(maker(function, it.1)) == Some(way.block)).collect();
+        let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
+        for inst in instructions {
+            let Some(value) = function.dfg.inst_results(inst).first().copied() else { continue };
+            if let Some(same) = sum(function, value).and_then(|it| known.get(&it)) {
+                names.insert(value, *same);
+                function.layout.remove_inst(inst);
+            }
+        }
+    }
+    rename(function, &names, &HashSet::new());
+}
+
+/// A value, and the constant that is added to it.
+type Sum = (Value, i64);
+
+fn sum(function: &Function, value: Value) -> Option<Sum> {
+    let inst = function.dfg.value_def(value).inst()?;
+    let InstructionData::Binary { opcode: Opcode::Iadd, args: [of, by] } = function.dfg.insts[inst] else { return None };
+    match function.dfg.insts[function.dfg.value_def(by).inst()?] {
+        InstructionData::UnaryImm { opcode: Opcode::Iconst, imm } => Some((of, imm.bits())),
+        _ => None,
+    }
+}
+
+fn maker(function: &Function, value: Value) -> Inst {
+    function.dfg.value_def(value).inst().expect("a sum is computed")
+}
+
+/// Gives values other names, except in these instructions.
+fn rename(function: &mut Function, names: &HashMap<Value, Value>, except: &HashSet<Inst>) {
+    if names.is_empty() {
+        return;
+    }
+    let blocks: Vec<Block> = function.layout.blocks().collect();
+    for block in blocks {
+        let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
+        for inst in instructions.into_iter().filter(|it| !except.contains(it)) {
+            function.dfg.map_inst_values(inst, |it| last_name(names, it));
+        }
+    }
+}
+
+fn last_name(names: &HashMap<Value, Value>, mut value: Value) -> Value {
+    while let Some(next) = names.get(&value) {
+        value = *next;
+    }
+    value
 }
 
 /// Constants as second operands, which may be in memory. The result is the same, unless both operands are NaN.

@@ -14,7 +14,7 @@
 //! that no such index can fault. So the loop does not store what it computes in each turn for a fault. It may not assume
 //! that the ends are within the bounds: where they are not, the loop faults in its own turn.
 
-use super::local::MOST_LOCALS;
+use super::local::{MOST_LOCALS, private_head};
 use crate::interval::Range;
 use crate::loops::Known;
 use crate::visit;
@@ -30,7 +30,7 @@ const MOST_IN_A_ROUTINE: usize = 1024;
 
 /// In a routine's statements. `declared` is how many locals it had before all passes.
 pub(super) fn twice(program: &Program, routine: &mut Routine, body: &mut Block, declared: usize) {
-    Doubler { program, routine, declared, made: 0 }.block(body);
+    Doubler { program, routine, declared, made: 0, around: Vec::new() }.block(body);
 }
 
 struct Doubler<'p> {
@@ -40,12 +40,17 @@ struct Doubler<'p> {
     declared: usize,
     /// Operations that are there twice so far.
     made: usize,
+    /// The private loops around, without their bodies.
+    around: Vec<For>,
 }
 
 impl Doubler<'_> {
     fn block(&mut self, block: &mut Block) {
         for mut statement in std::mem::take(block) {
+            let depth = self.around.len();
+            self.around.extend(private_head(&statement));
             statement.kind.blocks_mut().into_iter().for_each(|it| self.block(it));
+            self.around.truncate(depth);
             match self.doubled(&statement) {
                 Some(statements) => block.extend(statements),
                 None => block.push(statement),
@@ -109,7 +114,8 @@ impl Doubler<'_> {
     fn wanted(&self, it: &For) -> Option<Range> {
         let mut wanted = self.program.repr(it.counter.ty)?.range()?;
         let mut is_unknown = false;
-        let known = Known { program: self.program, loops: &[it], checked: &|_| false, seen: &[] };
+        let loops: Vec<&For> = self.around.iter().chain([it]).collect();
+        let known = Known { program: self.program, loops: &loops, checked: &|_| false, seen: &[] };
         visit::statements(&it.body, &mut |statement| {
             visit::accesses(statement, &mut |place, _| {
                 self.indices(place, &mut |index, id| {
