@@ -202,11 +202,11 @@ fn constants_near(function: &mut Function, block: Block) {
         } else {
             handed_on(function, inst)
         };
-        let far: Vec<(Value, Inst)> = values.iter().filter_map(|it| Some((*it, constant_of(function, *it, block)?))).collect();
+        let far: Vec<(Value, Inst)> = values.iter().filter_map(|it| Some((*it, constant_of(function, *it, (block, last), inst)?))).collect();
         for (value, maker) in far {
             made.entry(value).or_insert_with(|| copy_before(function, maker, inst));
         }
-        let arguments = function.dfg.inst_args(inst).len();
+        let arguments = tested(function, inst);
         let mut at = 0;
         function.dfg.map_inst_values(inst, |value| {
             at += 1;
@@ -216,17 +216,25 @@ fn constants_near(function: &mut Function, block: Block) {
     }
 }
 
-/// The values that a block's end hands to other blocks.
+/// The values that a block's end hands to other blocks, or to a caller.
 fn handed_on(function: &Function, last: Inst) -> Vec<Value> {
-    let tested = function.dfg.inst_args(last).len();
-    function.dfg.inst_values(last).skip(tested).collect()
+    function.dfg.inst_values(last).skip(tested(function, last)).collect()
 }
 
-/// What makes a constant in another block.
-fn constant_of(function: &Function, value: Value, block: Block) -> Option<Inst> {
+/// How many values a block's end uses before those.
+fn tested(function: &Function, last: Inst) -> usize {
+    match function.dfg.insts[last].opcode() {
+        Opcode::Return => 0,
+        _ => function.dfg.inst_args(last).len(),
+    }
+}
+
+/// What makes a constant in another block, or anywhere before a block's end.
+fn constant_of(function: &Function, value: Value, (block, last): (Block, Inst), user: Inst) -> Option<Inst> {
     let inst = function.dfg.value_def(value).inst()?;
     let is_constant = function.dfg.insts[inst].opcode() == Opcode::Iconst;
-    (is_constant && function.layout.inst_block(inst) != Some(block)).then_some(inst)
+    let is_far = user == last || function.layout.inst_block(inst) != Some(block);
+    (is_constant && is_far).then_some(inst)
 }
 
 fn copy_before(function: &mut Function, maker: Inst, next: Inst) -> Value {
