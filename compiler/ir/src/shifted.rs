@@ -13,7 +13,9 @@
 //! shifted by eight is tried with each of them.
 
 use crate::evaluate::{Storage, scalar};
-use crate::{Block, Chars, Conversion, Expr, ExprKind, For, Op, Place, Repr, Statement, StatementKind, Step, Taking, Type, Value};
+use crate::{
+    Block, Chars, Conversion, Expr, ExprKind, For, Op, Place, Repr, Statement, StatementKind, Step, Taking, Type, Value,
+};
 use staunch_runtime::{Fault, FaultKind};
 
 /// So many turns shift a byte out.
@@ -36,7 +38,9 @@ pub fn shifted(it: &For) -> Option<Shifted<'_>> {
     let Step::Constant(step) = it.step else { return None };
     let is_of_eight = last? - first? == (TURNS - 1) * step;
     let is_plain = it.is_private && matches!(it.taking, Taking::Each) && !it.may_leave_range();
-    let [Statement { kind: StatementKind::If { condition, then, otherwise }, .. }] = it.body.as_slice() else { return None };
+    let [Statement { kind: StatementKind::If { condition, then, otherwise }, .. }] = it.body.as_slice() else {
+        return None;
+    };
     let turn = Turn::of(condition, then, otherwise).filter(|_| is_of_eight && is_plain)?;
     turn.is_affine()?.then_some(())?;
     let width = turn.repr.size() * 8;

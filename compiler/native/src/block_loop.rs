@@ -22,8 +22,8 @@ use staunch_ir::alias::{Alias, Frame, alias};
 use staunch_ir::layout::Shape;
 use staunch_ir::loops::running;
 use staunch_ir::{
-    ArrayId, Const, Conversion, Expr, ExprKind, For, Location, Op, Place, Projection, Statement, StatementKind, Step, Taking, Type,
-    Value, visit,
+    ArrayId, Const, Conversion, Expr, ExprKind, For, Location, Op, Place, Projection, Statement, StatementKind, Step,
+    Taking, Type, Value, visit,
 };
 
 /// The calls of the C library for less than this take longer than the loop.
@@ -68,7 +68,8 @@ impl<'p> Function<'_, 'p> {
             self.take_ahead(&way, it.taking.is_of_many(), at);
         }
         let to = self.start_of(&found.target, found.least);
-        let align = u8::try_from(self.module.layout.shape(self.element_type(&found.target)).align).expect("alignments are small");
+        let align = u8::try_from(self.module.layout.shape(self.element_type(&found.target)).align)
+            .expect("alignments are small");
         let (config, flags) = (self.module.output.target_config(), MemFlagsData::trusted());
         match &found.what {
             What::Byte(byte) => {
@@ -158,7 +159,9 @@ impl<'p> Function<'_, 'p> {
     fn distance_from_counter(&self, index: &Expr, it: &For) -> Option<i128> {
         match &index.kind {
             ExprKind::Load(place) if place.is_same_variable(&it.counter) => Some(0),
-            ExprKind::Convert(Conversion::Value, operand) if self.keeps_value(operand, index) => self.distance_from_counter(operand, it),
+            ExprKind::Convert(Conversion::Value, operand) if self.keeps_value(operand, index) => {
+                self.distance_from_counter(operand, it)
+            }
             ExprKind::Apply(op @ (Op::Add | Op::Sub), operands) if self.known(&|known| known.is_exact(index)) => {
                 let [a, b] = operands.as_slice() else { return None };
                 let number = |it: &Expr| it.as_const().and_then(Value::as_integer);

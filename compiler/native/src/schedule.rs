@@ -63,7 +63,9 @@ struct Handed {
 impl Handed {
     /// Ends the block after what makes a value.
     fn hand(&mut self, function: &mut Function, block: Block, maker: Inst) {
-        let Some(following) = function.layout.next_inst(maker).filter(|_| self.names.len() < MOST_HANDED) else { return };
+        let Some(following) = function.layout.next_inst(maker).filter(|_| self.names.len() < MOST_HANDED) else {
+            return;
+        };
         let value = function.dfg.first_result(maker);
         let next = function.dfg.make_block();
         let ty = function.dfg.value_type(value);
@@ -116,7 +118,8 @@ fn reuse_sums(function: &mut Function) {
         let mut ways = flow.pred_iter(block);
         let (Some(way), None) = (ways.next(), ways.next()) else { continue };
         let known = handed_on(function, way.inst).into_iter().filter_map(|it| Some((sum(function, it)?, it)));
-        let known: HashMap<Sum, Value> = known.filter(|it| function.layout.inst_block(maker(function, it.1)) == Some(way.block)).collect();
+        let known: HashMap<Sum, Value> =
+            known.filter(|it| function.layout.inst_block(maker(function, it.1)) == Some(way.block)).collect();
         let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
         for inst in instructions {
             let Some(value) = function.dfg.inst_results(inst).first().copied() else { continue };
@@ -134,7 +137,9 @@ type Sum = (Value, i64);
 
 fn sum(function: &Function, value: Value) -> Option<Sum> {
     let inst = function.dfg.value_def(value).inst()?;
-    let InstructionData::Binary { opcode: Opcode::Iadd, args: [of, by] } = function.dfg.insts[inst] else { return None };
+    let InstructionData::Binary { opcode: Opcode::Iadd, args: [of, by] } = function.dfg.insts[inst] else {
+        return None;
+    };
     match function.dfg.insts[function.dfg.value_def(by).inst()?] {
         InstructionData::UnaryImm { opcode: Opcode::Iconst, imm } => Some((of, imm.bits())),
         _ => None,
@@ -170,7 +175,8 @@ fn last_name(names: &HashMap<Value, Value>, mut value: Value) -> Value {
 fn constants_second(function: &mut Function, block: Block) {
     let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
     for inst in instructions {
-        let InstructionData::Binary { opcode: Opcode::Fadd | Opcode::Fmul, args: [a, b] } = function.dfg.insts[inst] else {
+        let InstructionData::Binary { opcode: Opcode::Fadd | Opcode::Fmul, args: [a, b] } = function.dfg.insts[inst]
+        else {
             continue;
         };
         if is_number(function, a) && !is_number(function, b) {
@@ -194,15 +200,12 @@ fn constants_near(function: &mut Function, block: Block) {
     let is_cold = function.layout.is_cold(block);
     let Some(last) = function.layout.last_inst(block) else { return };
     let mut made: HashMap<Value, Value> = HashMap::new();
-    let instructions: Vec<Inst> =
-        if is_cold { function.layout.block_insts(block).collect() } else { vec![last] };
+    let instructions: Vec<Inst> = if is_cold { function.layout.block_insts(block).collect() } else { vec![last] };
     for inst in instructions {
-        let values: Vec<Value> = if is_cold {
-            function.dfg.inst_values(inst).collect()
-        } else {
-            handed_on(function, inst)
-        };
-        let far: Vec<(Value, Inst)> = values.iter().filter_map(|it| Some((*it, constant_of(function, *it, (block, last), inst)?))).collect();
+        let values: Vec<Value> =
+            if is_cold { function.dfg.inst_values(inst).collect() } else { handed_on(function, inst) };
+        let far: Vec<(Value, Inst)> =
+            values.iter().filter_map(|it| Some((*it, constant_of(function, *it, (block, last), inst)?))).collect();
         for (value, maker) in far {
             made.entry(value).or_insert_with(|| copy_before(function, maker, inst));
         }

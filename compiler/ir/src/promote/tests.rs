@@ -195,5 +195,8 @@ fn a_loop_whose_ends_show_its_indices_is_there_twice() {
     assert!(!doubled(int(4), count()), "it faults in all cases");
     assert!(!doubled(load(temp()), wide()), "an index that is not the counter");
     assert!(!doubled(load(count()), count()), "an end that is the counter");
-    assert!(!doubled(Expr::apply(Op::Div, Type::INT, vec![int(9), load(temp())], AT), count()), "an end that can fault");
+    assert!(
+        !doubled(Expr::apply(Op::Div, Type::INT, vec![int(9), load(temp())], AT), count()),
+        "an end that can fault"
+    );
 }

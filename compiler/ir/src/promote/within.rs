@@ -79,15 +79,17 @@ impl Doubler<'_> {
         }
         self.made += size;
         let mut made = Made { at: statement.at, ty, before: Block::new(), tests: Vec::new() };
-        let low = self.end(&mut made, low, "first", (Op::Ge, Op::Max, least));
-        let high = self.end(&mut made, high, "last", (Op::Le, Op::Min, most));
+        let names = if *step > 0 { ["first", "last"] } else { ["last", "first"] };
+        let low = self.end(&mut made, low, names[0], (Op::Ge, Op::Max, least));
+        let high = self.end(&mut made, high, names[1], (Op::Le, Op::Min, most));
         let [first, last] = if *step > 0 { [low, high] } else { [high, low] };
         let mut within = For { first: first.1, last: last.1, ..(**it).clone() };
         if u64::try_from(most - least).is_ok_and(|it| it < Context::FREE_TURNS) {
             takes_none(&mut within);
         }
         let other = For { first: first.0, last: last.0, ..(**it).clone() };
-        let condition = made.tests.into_iter().reduce(|a, b| Expr::apply(Op::And, Type::BOOL, vec![a, b], statement.at))?;
+        let condition =
+            made.tests.into_iter().reduce(|a, b| Expr::apply(Op::And, Type::BOOL, vec![a, b], statement.at))?;
         let loops = [within, other].map(|it| vec![Statement::new(StatementKind::For(Box::new(it)), statement.at)]);
         let [then, otherwise] = loops;
         made.before.push(Statement::new(StatementKind::If { condition, then, otherwise }, statement.at));
