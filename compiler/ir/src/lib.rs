@@ -51,6 +51,7 @@ pub mod promote;
 pub mod reached;
 pub mod reference;
 pub mod shapes;
+pub mod shifted;
 pub mod stack;
 pub mod startup;
 pub mod stop;

@@ -21,6 +21,7 @@ mod pointed;
 mod read_once;
 mod set_first;
 mod unseen;
+mod within;
 
 use crate::alias::{Alias, Frame, alias};
 use crate::effects::{Effects, Rules, effects, statement_faults};
@@ -31,12 +32,13 @@ use crate::{
     Block, Const, Expr, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type,
     Value,
 };
-use local::{MOST_LOCALS, name};
+use local::{MOST_LOCALS, name, private_head};
 use pointed::directly;
 use read_once::read_once;
 use set_first::is_set_first;
 use staunch_runtime::Repr;
 use unseen::Others;
+use within::twice;
 
 /// A loop that touches more places than this stays: each is compared with each.
 const MOST_PLACES: usize = 128;
@@ -52,11 +54,13 @@ pub struct Gain<'a> {
     /// Whether a WHILE or REPEAT is taken that can fault and stores neither to an element of an array nor through a reference: where the
     /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
+    /// Whether a loop is there twice, so that one of them needs no checks of its indices.
+    pub of_ends: bool,
 }
 
 impl Gain<'_> {
     /// Of all that can be.
-    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false };
+    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false, of_ends: false };
 }
 
 /// The program with such loops.
@@ -70,6 +74,9 @@ pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
         let mut routine = program.routines[at].clone();
         let declared = routine.locals.len();
         directly(&program, &mut routine, &mut body, declared);
+        if gain.of_ends {
+            twice(&program, &mut routine, &mut body, declared);
+        }
         let (known, around) = (&known, Vec::new());
         Promoter { program: &program, gain, known, routine: &mut routine, declared, checked, around }.block(&mut body);
         read_once(&program, &mut routine, &mut body, declared);
@@ -306,13 +313,6 @@ fn is_plain(kind: &StatementKind) -> bool {
         | StatementKind::PrescanBlock { .. }
         | StatementKind::Stop(_)
         | StatementKind::Fault(_) => false,
-    }
-}
-
-fn private_head(statement: &Statement) -> Option<For> {
-    match &statement.kind {
-        StatementKind::For(it) if it.is_private => Some(For { body: Vec::new(), ..(**it).clone() }),
-        _ => None,
     }
 }
 

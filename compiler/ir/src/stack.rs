@@ -107,10 +107,10 @@ impl Taken<'_> {
         for projection in &place.projections {
             match projection {
                 Projection::Field(_) => {}
-                // The reference, the distance, and a value on its way.
+                // The reference, the distance, a value on its way, and the fault of an access.
                 Projection::Deref { .. } => {
                     self.values += 4;
-                    self.make(Type::Elementary(crate::Elementary::Lword));
+                    (0..2).for_each(|_| self.make(Type::Elementary(crate::Elementary::Lword)));
                 }
                 Projection::Index { index, .. } => {
                     // The distance and the address.

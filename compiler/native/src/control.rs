@@ -2,7 +2,7 @@
 
 use cranelift_codegen::ir as clif;
 use cranelift_frontend::Variable;
-use staunch_ir::{Count, Expr, For, Location, Repr, Step, Taking};
+use staunch_ir::{Count, Expr, For, Location, Repr, Step, Taking, Value};
 
 /// What leads to a further turn.
 pub(crate) enum Control<'p> {
@@ -34,6 +34,15 @@ impl Running<'_> {
         let is_whole = self.repr.size() < 8 && self.repr.range() == Some(self.it.range);
         let is_constant = matches!(self.it.step, Step::Constant(_));
         self.register.is_some() && is_whole && is_constant && self.it.may_leave_range()
+    }
+
+    /// What the counter is after the last turn, if that is constant.
+    pub(crate) fn end(&self) -> Option<i128> {
+        let [first, last] = [&self.it.first, &self.it.last].map(|it| it.as_const().and_then(Value::as_integer));
+        let (first, last, Step::Constant(step)) = (first?, last?, &self.it.step) else { return None };
+        let is_past = if *step > 0 { first > last } else { first < last };
+        let turns = if is_past { 0 } else { (last - first) / step + 1 };
+        (self.register.is_some() && !self.it.may_leave_range()).then_some(first + turns * step)
     }
 }
 

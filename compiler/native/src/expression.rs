@@ -5,7 +5,7 @@ use crate::function::Function;
 use crate::operands::Operands;
 use crate::place::PlaceValue;
 use crate::{inline_conversion, inline_op, runtime_call};
-use cranelift_codegen::ir as clif;
+use cranelift_codegen::ir::{self as clif, InstBuilder};
 use staunch_ir::{Conversion, Expr, ExprKind, Location, Op, Place, Repr};
 
 impl Function<'_, '_> {
@@ -37,6 +37,10 @@ impl Function<'_, '_> {
     }
 
     fn apply(&mut self, op: Op, operands: &[Expr], at: Location) -> clif::Value {
+        if op == Op::Advance && self.stays_within_its_half(operands) {
+            let [reference, distance] = [&operands[0], &operands[1]].map(|it| self.scalar(it));
+            return self.ins().iadd(reference, distance);
+        }
         let repr = inline_op::repr(self.module.program, op, operands);
         let values = operands.iter().map(|operand| self.scalar(operand)).collect();
         let constants = operands.iter().map(Expr::as_const).collect();

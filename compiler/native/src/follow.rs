@@ -3,6 +3,7 @@
 use crate::address::{Address, Kind};
 use crate::function::{Function, Leads};
 use crate::place::class;
+use crate::quiet;
 use crate::runtime_call::by_pointer;
 use crate::signature::clif_type;
 use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
@@ -134,11 +135,6 @@ impl Function<'_, '_> {
         self.fault_of_kind(kind.expect("an access returns its fault"), at);
     }
 
-    fn number(&mut self, value: u32) -> (AbiParam, clif::Value) {
-        let value = self.integer(types::I32, i128::from(value));
-        self.by_repr(Repr::U32, value)
-    }
-
     fn space(&mut self, size: u64) -> (Address, clif::Value) {
         let address = self.temporary(Shape { size, align: 8 });
         (address, self.pointer(address))
@@ -191,9 +187,8 @@ impl Function<'_, '_> {
     }
 
     fn load_by_runtime(&mut self, it: Reached, repr: Repr) -> clif::Value {
-        let (space, out) = self.space(8);
-        let arguments = self.access(it, repr, out);
-        self.checked("staunch_reference_load", &arguments, it.at);
+        let space = self.space(quiet::SPACE).0;
+        self.access("staunch_reference_load", it, repr, space);
         self.load_as(clif_type(repr), space)
     }
 
@@ -214,18 +209,14 @@ impl Function<'_, '_> {
     }
 
     fn store_by_runtime(&mut self, it: Reached, repr: Repr, value: clif::Value) {
-        let (space, from) = self.space(8);
+        let space = self.space(quiet::SPACE).0;
         self.store(value, space);
-        let arguments = self.access(it, repr, from);
-        self.checked("staunch_reference_store", &arguments, it.at);
+        self.access("staunch_reference_store", it, repr, space);
     }
 
-    fn access(&mut self, it: Reached, repr: Repr, value: clif::Value) -> [(AbiParam, clif::Value); 7] {
-        let [words, state] = self.world();
-        let view = self.number(view(self.module.program, it.ty).code());
-        let size = self.number(repr.size());
-        let [reference, distance] = [it.way.reference, it.way.distance].map(|value| (AbiParam::new(types::I64), value));
-        [words, state, reference, distance, view, size, by_pointer(value)]
+    fn access(&mut self, symbol: &'static str, it: Reached, repr: Repr, space: Address) {
+        let numbers = vec![view(self.module.program, it.ty).code(), repr.size()];
+        self.access_away((symbol, numbers), [it.way.reference, it.way.distance], space, it.at);
     }
 
     /// A copy, in the frame, of a string reached through a reference.
@@ -271,11 +262,9 @@ impl Function<'_, '_> {
             (None, Wanted::Exact(id)) if !way.is_elsewhere() => self.whole(reference, distance, (id, it.ty)),
             (None, Wanted::Exact(_) | Wanted::Repr(_) | Wanted::Text(_)) => None,
         };
-        let (space, out) = self.space(8);
-        let [words, state] = self.world();
-        let wanted = self.number(wanted.code());
-        let [reference, distance] = [reference, distance].map(|value| (AbiParam::new(types::I64), value));
-        self.checked("staunch_reference_find", &[words, state, reference, distance, wanted, by_pointer(out)], it.at);
+        let space = self.space(quiet::SPACE).0;
+        let state = self.world()[1];
+        self.access_away(("staunch_reference_find", vec![wanted.code()]), [reference, distance], space, it.at);
         let mut offset = self.load_as(types::I64, space);
         if let Some(done) = done {
             self.ins().jump(done, &[BlockArg::Value(offset)]);

@@ -36,7 +36,8 @@ impl<'p> Function<'_, 'p> {
     }
 
     pub(crate) fn for_loop(&mut self, it: &'p For, at: Location) -> Flow {
-        if let Some(flow) = self.copied(it, at) {
+        let whole = self.copied(it, at).or_else(|| self.block_at_once(it, at));
+        if let Some(flow) = whole.or_else(|| self.looked_up_by_table(it, at)) {
             return flow;
         }
         let opens = self.open_turns(&[&it.body]);
@@ -217,7 +218,7 @@ impl<'p> Function<'_, 'p> {
     /// bits lets it do.
     pub(crate) fn natural_end(&mut self, control: &Control<'p>, after: clif::Block) -> clif::Block {
         match control {
-            Control::Count(running) if running.oversteps() => self.builder.create_block(),
+            Control::Count(running) if running.oversteps() || running.end().is_some() => self.builder.create_block(),
             Control::Count(_) | Control::Unless(_) | Control::Always => after,
         }
     }
@@ -228,6 +229,11 @@ impl<'p> Function<'_, 'p> {
             return;
         }
         self.go_on_in(end);
+        if let Some(value) = running.end() {
+            self.set_end(running, value);
+            self.ins().jump(after, &[]);
+            return;
+        }
         let counter = self.counter_value(running);
         let Step::Constant(step) = running.it.step else { unreachable!("only constant steps are undone") };
         let range = running.it.range;
@@ -246,6 +252,14 @@ impl<'p> Function<'_, 'p> {
         };
         self.set_counter(running, counter, true);
         self.ins().jump(after, &[]);
+    }
+
+    /// Gives the counter the value that it is known to have at the loop's end, so that nobody needs its register any more. What is in
+    /// memory has it.
+    pub(crate) fn set_end(&mut self, running: &Running<'p>, value: i128) {
+        let is_variable = matches!(self.place_value(&running.it.counter), PlaceValue::Variable(_));
+        let value = self.integer(types::I64, value);
+        self.set_counter(running, value, is_variable);
     }
 
     /// The counter's next value, in its register and in its storage.

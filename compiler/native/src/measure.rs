@@ -2,7 +2,6 @@
 //! reads. The code generator says it when it has made the function, so it is of the code that runs.
 
 use crate::count::{CodeOf, Counted, Gap, Numbered};
-use cranelift_codegen::Context;
 use cranelift_codegen::ir::Function;
 use cranelift_codegen::{CompiledCode, binemit::CodeOffset};
 use cranelift_module::{DataId, FuncId, ModuleReloc, ModuleRelocTarget, default_libcall_names};
@@ -59,10 +58,9 @@ pub(crate) struct Made {
 }
 
 impl Made {
-    /// Of the code in `context`.
-    pub(crate) fn of(context: &Context, id: FuncId, name: &str) -> Self {
-        let code = context.compiled_code();
-        let targets = code.map(|it| relocations(it, &context.func, id)).unwrap_or_default();
+    /// Of the code of a function.
+    pub(crate) fn of(code: Option<&CompiledCode>, function: &Function, id: FuncId, name: &str) -> Self {
+        let targets = code.map(|it| relocations(it, function, id)).unwrap_or_default();
         Self {
             id,
             name: name.to_owned(),
@@ -74,9 +72,9 @@ impl Made {
     }
 
     /// The same, with the blocks of the code, which is of x86-64. Without marks of all loops, they are not known.
-    pub(crate) fn counted(self, context: &Context, marks: Option<&Numbered>) -> Self {
-        let counted = match (context.compiled_code(), marks) {
-            (Some(code), Some(marks)) => Counted::of(&code_of(code, &context.func, self.id), marks),
+    pub(crate) fn counted(self, code: Option<&CompiledCode>, function: &Function, marks: Option<&Numbered>) -> Self {
+        let counted = match (code, marks) {
+            (Some(code), Some(marks)) => Counted::of(&code_of(code, function, self.id), marks),
             (None, _) => Err(Gap::All),
             (_, None) => Err(Gap::Loop),
         };

@@ -78,11 +78,12 @@ impl Function<'_, '_> {
     /// A real constant as the integer of its bits, which an instruction stores without a register.
     fn as_immediate(&mut self, value: clif::Value) -> clif::Value {
         let dfg = &self.builder.func.dfg;
-        let bits = match dfg.value_def(value).inst().map(|it| dfg.insts[it]) {
-            Some(InstructionData::UnaryIeee32 { imm, .. }) => imm.bits(),
+        let (ty, bits) = match dfg.value_def(value).inst().map(|it| dfg.insts[it]) {
+            Some(InstructionData::UnaryIeee32 { imm, .. }) => (types::I32, imm.bits().into()),
+            Some(InstructionData::UnaryIeee64 { imm, .. }) => (types::I64, imm.bits().into()),
             _ => return value,
         };
-        self.integer(types::I32, bits.into())
+        self.integer(ty, bits)
     }
 
     /// The flags of a load.

@@ -5,22 +5,25 @@ use crate::debug::notes::Notes;
 use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
 use crate::measure::{Made, Measures, measures};
+use crate::schedule::{merge, schedule};
 use crate::target::Aim;
 use crate::tidy::tidy;
 use crate::unused::drop_unused_loads;
 use crate::{Error, signature, target};
-use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
-use cranelift_codegen::ir::{InstBuilder, MemFlagsData, Signature, Value};
+use cranelift_codegen::ir::{AbiParam, Function, InstBuilder, MemFlagsData, Signature, Value, types};
+use cranelift_codegen::isa::CallConv;
+use cranelift_codegen::{CompiledCode, Context};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
 use staunch_ir::effects::Effects;
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::reference::Targets;
-use staunch_ir::{Program, Routine, RoutineId, RoutineKind, Type};
+use staunch_ir::{Program, Repr, Routine, RoutineId, RoutineKind, Type};
 use staunch_runtime::reference::encode;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write;
+use target_lexicon::Architecture;
 
 /// Functions of more instructions are not optimised: that takes time that grows faster than they do,
 /// to minutes for a hundred thousand statements.
@@ -64,6 +67,10 @@ pub(crate) struct ModuleEmitter<'p> {
     targets: Option<Targets<'p>>,
     expectations: HashMap<Type, Vec<Expectation>>,
     small: SmallRoutines,
+    /// The functions that keep all registers, by those of the runtime that they call, and how many numbers they are given.
+    pub(crate) quiet: BTreeMap<&'static str, (FuncId, usize)>,
+    /// Whether the machine's operations have operands in memory.
+    pub(crate) has_operands_in_memory: bool,
     /// The size of each constant, in the order in which they were asked for.
     sizes: Vec<(DataId, u64)>,
     /// The functions, in the order in which they are made.
@@ -97,7 +104,6 @@ impl<'p> ModuleEmitter<'p> {
             handles_faults: program.handles_faults(),
             scanned,
             effects,
-            output,
             functions: Vec::with_capacity(program.routines.len()),
             imports: HashMap::new(),
             constants: HashMap::new(),
@@ -105,11 +111,14 @@ impl<'p> ModuleEmitter<'p> {
             targets: None,
             expectations: HashMap::new(),
             small: SmallRoutines::default(),
+            quiet: BTreeMap::new(),
+            has_operands_in_memory: matches!(output.isa().triple().architecture, Architecture::X86_64),
             sizes: Vec::new(),
             made: Vec::with_capacity(program.routines.len()),
             listing: None,
             counts: false,
             notes: None,
+            output,
         }
     }
 
@@ -171,6 +180,22 @@ impl<'p> ModuleEmitter<'p> {
             .declare_function(symbol, Linkage::Import, signature)
             .expect("a symbol of the runtime has one signature, and no other meaning");
         self.imports.insert(symbol.to_owned(), id);
+        id
+    }
+
+    /// A function that keeps all registers, for an access by reference by one of the runtime.
+    pub(crate) fn quiet(&mut self, symbol: &'static str, numbers: usize) -> FuncId {
+        if let Some((id, _)) = self.quiet.get(symbol) {
+            return *id;
+        }
+        let mut signature = Signature::new(CallConv::PreserveAll);
+        // The state, the reference, the distance, and what is loaded or stored.
+        signature.params.extend([signature::POINTER, types::I64, types::I64, signature::POINTER].map(AbiParam::new));
+        let number = signature::c_value(self.output.isa().triple(), Repr::U32);
+        signature.params.extend(std::iter::repeat_n(number, numbers));
+        let name = format!("quiet_{symbol}");
+        let id = self.output.declare_function(&name, Linkage::Local, &signature).expect("no other symbol begins so");
+        self.quiet.insert(symbol, (id, numbers));
         id
     }
 
@@ -304,13 +329,18 @@ impl<'p> ModuleEmitter<'p> {
             marks.extend(sizes(&context.func));
         }
         let marks = Numbered::set(&mut context.func, &marks);
+        let mut scheduled = None;
         let defined = if context.func.dfg.num_insts() > LARGE {
             self.define_plainly(context, id)
+        } else if self.aim == Aim::Speed {
+            self.define_scheduled(context, id).map(|code| scheduled = Some(code))
         } else {
             self.output.define_function(id, context).map_err(|error| reason(&error))
         };
-        let made = Made::of(context, id, name);
-        self.made.push(if self.counts { made.counted(context, is_marked.then_some(&marks)) } else { made });
+        let code = scheduled.as_ref().or(context.compiled_code());
+        let made = Made::of(code, &context.func, id, name);
+        let marks = is_marked.then_some(&marks);
+        self.made.push(if self.counts { made.counted(code, &context.func, marks) } else { made });
         if let Some(notes) = &mut self.notes {
             notes.add(context, id, self.output.isa());
         }
@@ -318,14 +348,35 @@ impl<'p> ModuleEmitter<'p> {
         defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
     }
 
+    /// Gives the function another order between the code generator's steps.
+    fn define_scheduled(&mut self, context: &mut Context, id: FuncId) -> Result<CompiledCode, String> {
+        let (isa, control) = (self.output.isa(), &mut ControlPlane::default());
+        merge(&mut context.func);
+        context.optimize(isa, control).map_err(|error| reason(&error))?;
+        schedule(&mut context.func, self.has_operands_in_memory);
+        context.compute_cfg();
+        context.compute_domtree();
+        context.verify_if(isa).map_err(|error| reason(&error))?;
+        let (function, domtree) = (&context.func, &context.domtree);
+        let code = isa.compile_function(function, domtree, &mut Default::default(), false, control);
+        let code = code.map_err(|error| reason(&error))?.apply_params(&function.params);
+        self.define_bytes(&code, function, id)?;
+        Ok(code)
+    }
+
     fn define_plainly(&mut self, context: &mut Context, id: FuncId) -> Result<(), String> {
         let isa = target::plain_isa(self.output.isa());
         let code = context.compile(&*isa, &mut ControlPlane::default()).map_err(|error| reason(&error.inner))?;
-        let (align, bytes) = (u64::from(code.buffer.alignment), code.code_buffer().to_vec());
-        let relocations = code.buffer.relocs().to_vec();
-        let relocations: Vec<_> =
-            relocations.iter().map(|it| ModuleReloc::from_mach_reloc(it, &context.func, id)).collect();
-        self.output.define_function_bytes(id, align, &bytes, &relocations).map_err(|error| reason(&error))
+        let code = code.clone();
+        self.define_bytes(&code, &context.func, id)
+    }
+
+    fn define_bytes(&mut self, code: &CompiledCode, function: &Function, id: FuncId) -> Result<(), String> {
+        let relocations = code.buffer.relocs().iter();
+        let relocations: Vec<_> = relocations.map(|it| ModuleReloc::from_mach_reloc(it, function, id)).collect();
+        let defined =
+            self.output.define_function_bytes(id, code.buffer.alignment.into(), code.code_buffer(), &relocations);
+        defined.map_err(|error| reason(&error))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::measure::Measures;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::signature::PREFIX;
 use crate::target::Aim;
-use crate::{Error, entry, function, inline_block, inline_op, scan};
+use crate::{Error, entry, function, inline_block, inline_op, quiet, scan};
 use cranelift_frontend::FunctionBuilderContext;
 use cranelift_module::Module;
 use staunch_ir::effects::{Rules, effects};
@@ -67,7 +67,7 @@ pub(crate) fn emit_named(
         Aim::Size | Aim::Debugging => &RULES_OF_SIZE,
     };
     let suits = |it: &Statement| is_in_line(it, aim);
-    let gain = Gain { suits: &suits, of_reads: false, of_scalars: true };
+    let gain = Gain { suits: &suits, of_reads: false, of_scalars: true, of_ends: aim == Aim::Speed };
     // A debugger finds each variable where it is declared.
     let program = if aim == Aim::Debugging { program } else { &promoted(program, gain) };
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };
@@ -84,6 +84,7 @@ pub(crate) fn emit_named(
     for at in 0..program.routines.len() {
         function::emit(&mut module, &mut workspace, RoutineId::next(at))?;
     }
+    quiet::emit(&mut module, &mut workspace)?;
     let entry_points = entry::emit(&mut module, &mut workspace)?;
     let measures = module.measures([entry_points.init, entry_points.scan]);
     module.define_constants()?;

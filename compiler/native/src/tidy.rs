@@ -13,6 +13,7 @@
 //! and a callee loads by its pointer is at one place for it after this. And whether a callee faulted is decided where its code says
 //! so, and not again after the call.
 
+use crate::signature::CODE;
 use crate::unused::{Uses, drop_unused_params};
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, BlockArg, BlockCall, Function, Inst, InstructionData, Opcode, Value};
@@ -77,6 +78,8 @@ struct Test {
     branch: Inst,
     /// Which of the block's parameters is the code.
     code: usize,
+    /// Whether it is the code of a fault, and no BOOL.
+    is_code: bool,
     faulted: BlockCall,
     fine: BlockCall,
 }
@@ -96,7 +99,8 @@ impl Test {
         // Nobody else asks for the code, and all that is known of the others comes after the test.
         let is_only = uses.of(arg) == 1 + passed;
         let ends = leaves(function, faulted.block(pool), params);
-        (is_only && ends && passed == faulted.len(pool)).then_some(Self { block, branch, code, faulted, fine })
+        let is_code = function.dfg.value_type(arg) == CODE;
+        (is_only && ends && passed == faulted.len(pool)).then_some(Self { block, branch, code, is_code, faulted, fine })
     }
 
     /// Sends each way into the block to where it leads, if that is known.
@@ -116,6 +120,14 @@ impl Test {
                     to.update_args(&mut function.dfg.value_lists, |_| BlockArg::Value(code));
                     jump(function, way, to);
                 }
+                // A callee returns what is not constant only where it has a fault.
+                None if self.is_code => {
+                    let mut to = self.faulted.deep_clone(&mut function.dfg.value_lists);
+                    if let Some(code) = passed {
+                        to.update_args(&mut function.dfg.value_lists, |_| BlockArg::Value(code));
+                    }
+                    jump(function, way, to);
+                }
                 None => is_always_fine = false,
             }
         }
@@ -130,9 +142,21 @@ fn jump(function: &mut Function, end: Inst, destination: BlockCall) {
     function.dfg.insts[end] = InstructionData::Jump { opcode: Opcode::Jump, destination };
 }
 
-/// Whether a block leaves the function, and needs none of some values.
-fn leaves(function: &Function, block: Block, values: &[Value]) -> bool {
-    let is_return = |it: Inst| function.dfg.insts[it].opcode() == Opcode::Return;
+/// Blocks on the way out of a function that are looked at.
+const MOST_ON_THE_WAY: usize = 8;
+
+/// Whether a block leads straight out of the function, on a way that needs none of some values.
+fn leaves(function: &Function, mut block: Block, values: &[Value]) -> bool {
     let needs = |it: Inst| function.dfg.inst_values(it).any(|it| values.contains(&function.dfg.resolve_aliases(it)));
-    function.layout.last_inst(block).is_some_and(is_return) && !function.layout.block_insts(block).any(needs)
+    for _ in 0..MOST_ON_THE_WAY {
+        let Some(last) = function.layout.last_inst(block) else { return false };
+        if function.layout.block_insts(block).any(needs) {
+            return false;
+        }
+        match function.dfg.insts[last] {
+            InstructionData::Jump { destination, .. } => block = destination.block(&function.dfg.value_lists),
+            _ => return function.dfg.insts[last].opcode() == Opcode::Return,
+        }
+    }
+    false
 }

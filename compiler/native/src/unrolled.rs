@@ -32,8 +32,9 @@ const MOST_TURNS: usize = 32;
 const MOST_OF_GROUP: usize = 256;
 const LARGEST_GROUP: usize = 16;
 /// The code generator loads all that straight code reads before it computes: of more values than these it keeps some in the
-/// frame.
+/// frame. Where machines have [operands in memory](crate::schedule) it does not.
 const MOST_READ: usize = 16;
+const MOST_IN_MEMORY: usize = 64;
 /// Operations of turns in one routine, so that its code grows by no more.
 const MOST_IN_A_ROUTINE: usize = 4096;
 
@@ -53,7 +54,8 @@ impl<'p> Function<'_, 'p> {
         let is_plain = is_wanted && it.is_private && matches!(it.taking, Taking::Each) && !it.may_leave_range();
         let (first, step, count) = values(it).filter(|_| is_plain && !has_loop(it))?;
         let size = turns::size_of(&it.body).max(1);
-        let group = group(count, size, reads(it, &self.counters));
+        let most_read = if self.module.has_operands_in_memory { MOST_IN_MEMORY } else { MOST_READ };
+        let group = group(count, size, (reads(it, &self.counters), most_read));
         let made = self.unrolled + group * size;
         if group < 2 && count > 1 || made > MOST_IN_A_ROUTINE {
             return None;
@@ -110,8 +112,12 @@ impl<'p> Function<'_, 'p> {
             let last = self.last(running);
             let condition = if it.step > 0 { IntCC::SignedGreaterThan } else { IntCC::SignedLessThan };
             let is_past = self.ins().icmp(condition, end, last);
-            self.ins().brif(is_past, after, &[], head, &[]);
+            let done = self.builder.create_block();
+            self.ins().brif(is_past, done, &[], head, &[]);
             self.leads_back(it.group);
+            self.go_on_in(done);
+            self.set_end(running, running.end().expect("the loop's ends are constant"));
+            self.ins().jump(after, &[]);
             is_left = true;
         }
         self.builder.seal_block(head);
@@ -149,11 +155,11 @@ impl<'p> Function<'_, 'p> {
 }
 
 /// How many turns are one after the other: all, or a number that divides theirs; 1 where it is not worth while.
-fn group(count: usize, size: usize, reads: usize) -> usize {
-    if count <= MOST_TURNS && count * size <= MOST && count * reads <= MOST_READ {
+fn group(count: usize, size: usize, (reads, most_read): (usize, usize)) -> usize {
+    if count <= MOST_TURNS && count * size <= MOST && count * reads <= most_read {
         return count;
     }
-    let fits = |it: &usize| count.is_multiple_of(*it) && it * size <= MOST_OF_GROUP && it * reads <= MOST_READ;
+    let fits = |it: &usize| count.is_multiple_of(*it) && it * size <= MOST_OF_GROUP && it * reads <= most_read;
     (2..=LARGEST_GROUP).rev().find(fits).unwrap_or(1)
 }
 

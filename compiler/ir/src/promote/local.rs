@@ -1,7 +1,7 @@
-//! The locals that variables get.
+//! The locals that variables get, and the loops whose counters nothing else writes.
 
 use crate::alias::Frame;
-use crate::{Place, Program, Projection, Root, Routine, Type};
+use crate::{For, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type};
 
 /// Of one routine.
 pub(super) const MOST_LOCALS: usize = 256;
@@ -20,4 +20,12 @@ pub(super) fn name(program: &Program, routine: &Routine, place: &Place) -> Strin
         ty = ty.and_then(|it| program.part(it, projection));
     }
     name
+}
+
+/// A loop whose counter only it writes, without its body.
+pub(super) fn private_head(statement: &Statement) -> Option<For> {
+    match &statement.kind {
+        StatementKind::For(it) if it.is_private => Some(For { body: Vec::new(), ..(**it).clone() }),
+        _ => None,
+    }
 }

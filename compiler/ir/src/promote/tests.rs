@@ -14,8 +14,12 @@ const MAIN: usize = 3;
 
 /// `FOR count := 1 TO last DO … END_FOR`
 fn count_to(last: i16, body: Block) -> Statement {
+    count_to_end(int(last), body)
+}
+
+fn count_to_end(last: Expr, body: Block) -> Statement {
     let range = (i16::MIN.into(), i16::MAX.into());
-    let (first, last, step) = (int(1), int(last), Step::Constant(1));
+    let (first, step) = (int(1), Step::Constant(1));
     let it =
         For { counter: count(), first, last, step, range, is_private: true, body, taking: Taking::Each, step_at: AT };
     it.statement(AT)
@@ -174,4 +178,25 @@ fn a_routine_gets_so_many_locals() {
     let locals = after.routines[MAIN].locals.len();
     assert_eq!(locals, sample(Vec::new()).routines[MAIN].locals.len() + MOST_LOCALS);
     assert!(kinds(&after).iter().all(|it| *it != "for"));
+}
+
+#[test]
+fn a_loop_whose_ends_show_its_indices_is_there_twice() {
+    let gain = Gain { of_ends: true, ..Gain::WHOLE };
+    let doubled = |last: Expr, index: Place| {
+        let before = sample(vec![count_to_end(last, vec![assign(element(index), int(7))])]);
+        let after = promoted(&before, gain);
+        verify(&after).unwrap();
+        after.routines[MAIN].body.iter().any(|it| matches!(it.kind, StatementKind::If { .. }))
+    };
+    assert!(doubled(load(temp()), count()));
+    assert!(doubled(Expr::apply(Op::Sub, Type::INT, vec![load(temp()), int(1)], AT), count()));
+    assert!(!doubled(int(3), count()), "its indices are known");
+    assert!(!doubled(int(4), count()), "it faults in all cases");
+    assert!(!doubled(load(temp()), wide()), "an index that is not the counter");
+    assert!(!doubled(load(count()), count()), "an end that is the counter");
+    assert!(
+        !doubled(Expr::apply(Op::Div, Type::INT, vec![int(9), load(temp())], AT), count()),
+        "an end that can fault"
+    );
 }
