@@ -1,10 +1,9 @@
 //! What a program uses of the language, as far as a system may compute it in its own way.
 
-use rustc_hash::FxHashMap;
 use staunch_runtime::{Class, Elementary, Location};
 
 /// One such thing. Classes of types are those of the operands; a use of a class is one of the classes around it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
     /// The program computes with the type, or converts it. Choosing and comparing do not count: they make no new values.
     Type(Elementary),
@@ -19,7 +18,7 @@ pub enum Use {
 }
 
 /// A part of the language that a system may run in its own way.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// A call with an input EN.
     Enable,
@@ -196,20 +195,24 @@ const fn of_class(class: Class) -> &'static str {
     }
 }
 
-/// What a program uses, each with the first place in its source. Operations of constant expressions are included.
+/// What a program uses, each with the first place in its source. Operations of constant expressions are included. They are few
+/// and noted often: a list is quicker than a table.
 #[derive(Clone, Debug, Default)]
-pub struct Uses(FxHashMap<Use, Location>);
+pub struct Uses(Vec<(Use, Location)>);
 
 impl Uses {
     /// Notes a use, at the first place that has it.
     pub fn note(&mut self, found: Use, at: Location) {
         let key = |at: Location| (at.file, at.line, at.column);
-        self.0.entry(found).and_modify(|first| *first = std::cmp::min_by_key(*first, at, |it| key(*it))).or_insert(at);
+        match self.0.iter_mut().find(|it| it.0 == found) {
+            Some((_, first)) => *first = std::cmp::min_by_key(*first, at, |it| key(*it)),
+            None => self.0.push((found, at)),
+        }
     }
 
     /// The first place that uses it.
     pub fn first(&self, wanted: Use) -> Option<Location> {
-        let found = self.0.iter().filter(|it| wanted.covers(*it.0)).map(|it| *it.1);
+        let found = self.0.iter().filter(|it| wanted.covers(it.0)).map(|it| it.1);
         found.min_by_key(|it| (it.file, it.line, it.column))
     }
 }
