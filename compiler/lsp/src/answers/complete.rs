@@ -24,7 +24,7 @@ pub fn complete(project: &mut Project, documents: &Documents, path: &Path, posit
         return Vec::new();
     }
     let is_member = document[..start].trim_end().ends_with('.');
-    let mut offered = |text: &str, is_wanted: fn(&Offer) -> bool| -> Vec<_> {
+    let offered = |text: &str, is_wanted: fn(&Offer) -> bool| -> Vec<_> {
         let found = project.offers(documents, file, text, count(start));
         let offers = found.index.offers.iter().filter(|it| it.name != HERE && is_wanted(it));
         offers.map(|it| item(&found, it)).collect()
