@@ -4,7 +4,7 @@
 use crate::error::tell;
 use crate::json::quote;
 use crate::map::Map;
-use crate::run::Options;
+use crate::run::options::Options;
 use crate::value::value_at;
 use crate::{Error, path};
 use std::ops::Range;

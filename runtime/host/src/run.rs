@@ -1,7 +1,7 @@
 //! A run: scan after scan, with what goes in and what comes out.
 
 mod aside;
-mod options;
+pub(crate) mod options;
 mod ring;
 mod summary;
 

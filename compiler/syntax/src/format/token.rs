@@ -36,6 +36,10 @@ impl Token<'_> {
     }
 }
 
+const fn is_number(kind: Kind) -> bool {
+    matches!(kind, Kind::Integer | Kind::Based | Kind::Real | Kind::Time | Kind::Date)
+}
+
 /// Reads a text; nothing of it but white space is left out.
 pub fn read(text: &str) -> Vec<Token<'_>> {
     let mut tokens: Vec<Token<'_>> = Vec::with_capacity(text.len() / 4 + 16);
@@ -52,6 +56,10 @@ pub fn read(text: &str) -> Vec<Token<'_>> {
             is_member: false,
             is_kept: false,
         };
+        // `T#1. c` would be another literal without its space: as what has no meaning, it is left as it is written.
+        if token.kind == Kind::Dot && tokens.last().is_some_and(|it| is_number(it.kind)) {
+            token.kind = Kind::Unknown;
+        }
         token.is_member = tokens.last().is_some_and(|it| it.marks_name(&token));
         if token.is_member && token.kind.keyword().is_some() {
             token.kind = Kind::Name;

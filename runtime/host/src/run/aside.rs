@@ -1,7 +1,7 @@
 //! What a run in real time tells, its trace and what the program logs, by a thread of its own: the scan's thread copies values into a bounded
 //! ring, and neither writes, waits nor allocates. Rows without room there are counted, and lost.
 
-use super::Options;
+use super::options::Options;
 use super::ring::{Ring, Slot};
 use crate::Error;
 use crate::error::tell;
