@@ -227,6 +227,9 @@ pub struct Run {
     /// Inputs over time
     #[arg(long, value_name = "IN.csv")]
     pub stimulus: Option<PathBuf>,
+    /// Give a variable this value before and after each scan, whatever writes to it: level=50; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub force: Vec<String>,
     /// Where to write the variables after each scan: .csv, .vcd, .svg, .html, or - for standard output
     #[arg(long, value_name = "OUT")]
     pub trace: Option<PathBuf>,

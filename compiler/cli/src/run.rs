@@ -69,6 +69,7 @@ fn options(session: &Session, args: &Run) -> Result<Options, String> {
         cycle: cycle(session, args.cycle.as_deref())?,
         loop_budget: args.loop_budget.or(session.project.loop_budget),
         stimulus: args.stimulus.clone(),
+        forces: args.force.clone(),
         trace: args.trace.clone(),
         vars: args.vars.clone(),
         overlay: args.overlay.clone(),
@@ -105,6 +106,7 @@ fn execute(session: &Session, args: &Run, program: &Program) -> Result<u8, Strin
         value.map(|it| command.arg(flag).arg(it));
     }
     args.overlay.iter().for_each(|it| _ = command.arg("--overlay").arg(it));
+    args.force.iter().for_each(|it| _ = command.arg("--force").arg(it));
     let paths = [("--stimulus", &args.stimulus), ("--trace", &args.trace), ("--retain", &args.retain)];
     for (flag, path) in paths {
         path.as_ref().map(|it| command.arg(flag).arg(it));

@@ -19,12 +19,13 @@ pub enum Wish {
     Version,
 }
 
-const FLAGS: [(&str, &str, &str); 26] = [
+const FLAGS: [(&str, &str, &str); 27] = [
     ("--program", "NAME", "Run only this program"),
     ("--scans", "N", "End after N scans"),
     ("--cycle", "TIME", "Time from scan to scan, as 10ms"),
     ("--loop-budget", "N", "Limit for the turns of all loops in one scan together"),
     ("--stimulus", "FILE", "Inputs, from a CSV file"),
+    ("--force", "NAME=VALUE", "Give a variable this value before and after each scan; may be repeated"),
     ("--trace", "FILE", "Write a row for each scan, as .csv, .vcd, .svg or .html; - for standard output"),
     ("--from", "MOMENT", "Show scans from this one, or from this time, as 120 or 1s200ms"),
     ("--to", "MOMENT", "Show scans up to this one, or to this time"),
@@ -72,6 +73,7 @@ pub fn parse_options(mut arguments: impl Iterator<Item = OsString>, is_connected
             "--cycle" => options.cycle = Some(parse_duration(&utf8(value()?)?)?),
             "--loop-budget" => options.loop_budget = Some(count(&utf8(value()?)?)?),
             "--stimulus" => options.stimulus = Some(value()?.into()),
+            "--force" => options.forces.push(utf8(value()?)?),
             "--trace" => options.trace = Some(value()?.into()),
             "--vars" => options.vars = Some(utf8(value()?)?),
             "--overlay" => options.overlay.push(utf8(value()?)?),
@@ -194,7 +196,7 @@ mod tests {
 
     #[test]
     fn every_flag_is_read() {
-        let text = "--program P --scans=5 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --retain-within scan --realtime --table -q --from 3 --to T#1s --message-format=json";
+        let text = "--program P --scans=5 --force=a=1 --force b=2 --cycle 1ms --stimulus a.csv --trace - --vars a,b --retain r --retain-within scan --realtime --table -q --from 3 --to T#1s --message-format=json";
         let Wish::Run(options) = parse(text).unwrap() else { panic!() };
         assert_eq!(options.program.as_deref(), Some("P"));
         assert_eq!((options.scans, options.cycle), (Some(5), Some(1_000_000)));
@@ -203,6 +205,7 @@ mod tests {
         assert!(options.realtime && options.table && options.quiet && options.json);
         assert_eq!((options.from, options.to), (Some(Moment::Scan(3)), Some(Moment::Time(1_000_000_000))));
         assert_eq!(options.retain_within, Some(0));
+        assert_eq!(options.forces, ["a=1", "b=2"]);
         let Wish::Bench(bench) = parse("--bench --scans 7").unwrap() else { panic!() };
         assert_eq!(bench.scans, Some(7));
         let Wish::Help(help) = parse("--help").unwrap() else { panic!() };

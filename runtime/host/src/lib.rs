@@ -31,6 +31,7 @@ mod retain;
 mod schedule;
 mod start;
 mod stimulus;
+mod force;
 mod trace;
 
 mod attachments;

@@ -12,6 +12,7 @@ use aside::Aside;
 
 use crate::attachments::{Attachments, Ended};
 use crate::column::{columns, overlays};
+use crate::force::Forces;
 use crate::map::Map;
 use crate::messages::Messages;
 use crate::minor::{minor_faults_json, minor_faults_note};
@@ -48,6 +49,10 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
     options.trace.as_deref().map_or(Ok(()), trace::check_name)?;
     options.keep_apart().map_err(Error::Usage)?;
     let stimulus = options.stimulus.as_deref().map(|path| Stimulus::read(path, map, &running)).transpose()?;
+    let forces = Forces::parse(map, &running, &options.forces)?;
+    if let Some(note) = forces.note().filter(|_| !options.quiet) {
+        crate::error::tell(format_args!("{note}"));
+    }
     let columns = match options.shows_values() {
         true => columns(map, &running, options.vars.as_deref()).map_err(|it| Error::Usage(format!("--vars: {it}")))?,
         false => Vec::new(),
@@ -69,6 +74,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         stimulus,
         next_row: 0,
         held,
+        forces,
         fresh: vec![true; map.instances.len()],
         retention: None,
         start: Start::of(map),
@@ -143,6 +149,7 @@ struct Runner<'a> {
     next_row: usize,
     /// What the stimulus wrote to inputs, by row and place in it: they hold over a restart.
     held: Vec<(usize, usize)>,
+    forces: Forces,
     /// Instances that have not run since the start.
     fresh: Vec<bool>,
     retention: Option<Retention>,
@@ -276,7 +283,7 @@ impl Runner<'_> {
             self.hold();
         }
         let began = self.now();
-        let ran = self.program(turn.program, number, began);
+        let ran = self.forced(turn.program, number, began);
         let ended = self.now();
         if let Some(attachments) = self.attachments.as_mut().filter(|_| ran.is_ok()) {
             attachments.after(self.machine.state());
@@ -330,8 +337,16 @@ impl Runner<'_> {
     fn programs(&mut self, number: u64, now: Time, placed: bool) -> Result<(), Error> {
         self.schedule.advance(now, placed);
         for at in 0..self.schedule.due().len() {
-            self.program(self.schedule.due()[at], number, now)?;
+            self.forced(self.schedule.due()[at], number, now)?;
         }
+        Ok(())
+    }
+
+    /// What others than the program see of a forced variable is its value, and so does the program at first.
+    fn forced(&mut self, due: Due, number: u64, now: Time) -> Result<(), Error> {
+        self.forces.put(self.machine);
+        self.program(due, number, now)?;
+        self.forces.put(self.machine);
         Ok(())
     }
 
@@ -358,7 +373,7 @@ impl Runner<'_> {
         let Options { from, to, trace, .. } = self.options;
         let is_shown = trace.is_some() || self.options.has_table() || from.is_some() || to.is_some();
         let is_kept = self.real.is_some() || self.retention.is_some();
-        let has_input = !self.stimulus.rows.is_empty();
+        let has_input = !self.stimulus.rows.is_empty() || !self.forces.is_empty();
         let is_kept = is_kept || self.options.debugged;
         self.schedule.only().filter(|_| !is_shown && !is_kept && !has_input && !self.messages.is_there)
     }

@@ -47,6 +47,16 @@ pub(crate) struct Write {
 }
 
 impl Write {
+    /// A value as it is written in a table or an argument.
+    pub fn parse(map: &Map, place: Place, text: &str) -> Result<Self, String> {
+        let bytes = literal::parse(map, place, text)?;
+        let bit = match place.ty {
+            Type::Bit(number) => Some(number),
+            _ => None,
+        };
+        Ok(Self { offset: place.offset, bytes, bit, input: place.input })
+    }
+
     /// The bytes as they are written over a state.
     pub fn over(&self, state: &[u8]) -> Cow<'_, [u8]> {
         match self.bit {
@@ -67,6 +77,13 @@ impl Write {
             Some(_) => machine.write(self.offset, &[self.byte(machine.state())]),
             None => machine.write(self.offset, &self.bytes),
         }
+    }
+
+    /// Whether both write the same bit of the state.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        let is_apart = |a: &Self, b: &Self| a.offset + a.bytes.len() <= b.offset;
+        let are_bits = self.bit.is_some() && other.bit.is_some() && self.bit != other.bit;
+        !is_apart(self, other) && !is_apart(other, self) && !are_bits
     }
 
     /// Whether it is to the same variable.
@@ -286,13 +303,8 @@ impl Parser<'_> {
         let with_point = (self.decimal_comma && is_real).then(|| cell.text.replacen(',', ".", 1));
         let text = with_point.as_deref().unwrap_or(&cell.text);
         // What is said of it is said of it as it is written.
-        let bytes = literal::parse(self.map, place, text)
-            .map_err(|it| self.at(cell, it.replace(&format!("`{text}`"), &format!("`{}`", cell.text))))?;
-        let bit = match place.ty {
-            Type::Bit(number) => Some(number),
-            _ => None,
-        };
-        Ok(Write { offset: place.offset, bytes, bit, input: place.input })
+        Write::parse(self.map, place, text)
+            .map_err(|it| self.at(cell, it.replace(&format!("`{text}`"), &format!("`{}`", cell.text))))
     }
 
     fn in_order(&self, rows: &[Row]) -> Result<(), Error> {

@@ -121,6 +121,31 @@ fn the_clock_moves_by_the_cycle() {
     assert_eq!(out, "scan,time_ms,t.ET\n1,0,T#0s\n2,20,T#20ms\n");
 }
 
+/// The program, the stimulus and an initial value write to the variable, and nobody sees what they write.
+#[test]
+fn a_forced_variable_has_its_value_in_each_scan() {
+    let text = "PROGRAM P VAR_INPUT up : BOOL; END_VAR VAR n : INT; m : ARRAY[0..1] OF INT; s : STRING[3] := 'a'; END_VAR \
+                m[0] := n; n := n + 1; IF up THEN n := 0; END_IF END_PROGRAM";
+    let folder = Folder::with("force", &[("p.st", text), ("in.csv", "scan,up,n\n1,TRUE,5\n2,FALSE,9\n")]);
+    for backend in ["native", "rust", "interpret"] {
+        let run = format!("run p.st --scans 2 --stimulus in.csv --trace - --backend {backend}");
+        assert_eq!(
+            folder.staunch(&run).out(0),
+            "scan,time_ms,up,n,m[0],m[1],s\n1,0,TRUE,0,5,0,a\n2,10,FALSE,10,9,0,a\n"
+        );
+        let forced = folder.staunch(&format!("{run} --force n=7 --force m[1]=-1 --force=s='='"));
+        has(&forced.err, &["note: `n`, `m[1]`, `s` are forced\n"]);
+        assert_eq!(
+            forced.out(0),
+            "scan,time_ms,up,n,m[0],m[1],s\n1,0,TRUE,7,7,-1,=\n2,10,FALSE,7,7,-1,=\n"
+        );
+    }
+    let wrong = |force: &str| folder.staunch(&format!("run p.st --scans 1 --force {force}")).err(2);
+    has(&wrong("nn=1"), &["--force: there is no variable `nn`; did you mean `n`?"]);
+    has(&wrong("n"), &["--force: `n` has no value: write `NAME=VALUE`"]);
+    has(&wrong("n=a"), &["--force: `a` is not an INT"]);
+}
+
 #[test]
 fn numbers_share_a_lane_of_a_picture() {
     let text = "PROGRAM P VAR a, b : INT; END_VAR a := a + 1; b := a / 2; END_PROGRAM";

@@ -44,6 +44,8 @@ pub struct Options {
     /// Turns that the loops of one scan may take together; [`Context::TURNS`](staunch_runtime::Context::TURNS).
     pub loop_budget: Option<u64>,
     pub stimulus: Option<PathBuf>,
+    /// Variables that have one value before and after each scan, as `NAME=VALUE`.
+    pub forces: Vec<String>,
     /// CSV, VCD, SVG or HTML by its ending; `-` is standard output.
     pub trace: Option<PathBuf>,
     /// The first and the last scan of the trace or table.

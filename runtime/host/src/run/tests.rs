@@ -240,6 +240,7 @@ fn scans_in_real_time_neither_allocate_nor_wait_for_memory() {
         cycle: Some(1000),
         retain: Some(folder.join("retained")),
         stimulus: Some(stimulus),
+        forces: vec!["pause=T#1s".to_owned()],
         trace: Some("/dev/null".into()),
         vars: Some("up,level,c.CV,total,name".to_owned()),
         io: Io { connections, ..Io::default() },
