@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn values_are_those_of_a_stimulus() {
-        let forces = forces(&["level=7", "main.colour := Green", "m[1,2]=-3", "name='a=b'"]).unwrap();
+        let forces = forces(&["level=7", "main.colour := Green", "m[1,2]=-3", "name=a=b"]).unwrap();
         let mut machine = Garage::new();
         machine.init();
         forces.put(&mut machine);

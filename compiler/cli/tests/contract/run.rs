@@ -133,7 +133,7 @@ fn a_forced_variable_has_its_value_in_each_scan() {
             folder.staunch(&run).out(0),
             "scan,time_ms,up,n,m[0],m[1],s\n1,0,TRUE,0,5,0,a\n2,10,FALSE,10,9,0,a\n"
         );
-        let forced = folder.staunch(&format!("{run} --force n=7 --force m[1]=-1 --force=s='='"));
+        let forced = folder.staunch(&format!("{run} --force n=7 --force m[1]=-1 --force=s=="));
         has(&forced.err, &["note: `n`, `m[1]`, `s` are forced\n"]);
         assert_eq!(
             forced.out(0),
