@@ -408,6 +408,14 @@ pub const UNITS: &[Unit] = units! {
     Function "SQR"              "sqr"              [Siemens];
     Function "DEG"              "logix_deg"        [Logix];
     Function "RAD"              "logix_rad"        [Logix];
+    Function "UPPER"            "logix_upper"      [Logix];
+    Function "LOWER"            "logix_lower"      [Logix];
+    Function "STOD"             "logix_stod"       [Logix];
+    Function "SWPB"             "logix_swpb"       [Logix] "__SwapTwo";
+    Function "__SwapTwo"        "logix_swap_two"   [Logix];
+    // The instruction; the function is the standard's.
+    Function "FIND"             (LINE_END)         [Logix] "__FindFrom";
+    Function "__FindFrom"       "logix_find_from"  [Logix];
     Function "SPLIT_DATE"       "split_date" [Iec Cscape Codesys Openplc Openplc4 Logix Siemens];
     Function "SPLIT_TOD"        "split_tod" [Iec Cscape Codesys Openplc Openplc4 Logix Siemens];
     Function "SPLIT_LTOD"       "split_ltod" [Iec Cscape Codesys Openplc Openplc4 Logix Siemens];

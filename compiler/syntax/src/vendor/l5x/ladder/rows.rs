@@ -1,7 +1,7 @@
 //! The instructions of ladder: what each does, in Structured Text. `{0}`, `{1}` … stand for its operands, and `{rung}` for the
 //! condition of the rung before it. What the prescan does to one follows from its statement: `[:=]` sets to zero, and the
 //! instructions that Structured Text has here bring their own. By Rockwell 1756-RM003, "Bit", "Timer and Counter", "Compare",
-//! "Compute/Math", "Move/Logical", "File/Misc." and "Program Control Instructions".
+//! "Compute/Math", "Move/Logical", "File/Misc.", "ASCII String", "ASCII Conversion" and "Program Control Instructions".
 
 use super::super::names::key;
 
@@ -174,6 +174,12 @@ pub const ROWS: &[Row] = &[
     row(&["MID"], &["Source", "Quantity", "Start", "Destination"], WhereTrue("{3} := MID({0}, {1}, {2})")),
     row(&["DELETE"], &["Source", "Quantity", "Start", "Destination"], WhereTrue("{3} := DELETE({0}, {1}, {2})")),
     row(&["INSERT"], &["Source A", "Source B", "Start", "Destination"], WhereTrue("{3} := INSERT({0}, {1}, {2} - 1)")),
+    row(&["FIND"], &["Source", "Search", "Start", "Result"], WhereTrue("FIND({0}, {1}, {2}, {3})")),
+    row(&["UPPER"], MOVE, WhereTrue("UPPER({0}, {1})")),
+    row(&["LOWER"], MOVE, WhereTrue("LOWER({0}, {1})")),
+    row(&["DTOS"], MOVE, WhereTrue("DTOS({0}, {1})")),
+    row(&["STOD"], MOVE, WhereTrue("STOD({0}, {1})")),
+    row(&["SWPB"], &["Source", "Order Mode", "Destination"], WhereTrue("SWPB({0}, {1}, {2})")),
     row(&["AFI"], &[], More(Special::AlwaysFalse)),
     row(&["NOP"], &[], Nothing),
     // No other task interrupts a scan here.
