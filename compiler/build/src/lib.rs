@@ -289,11 +289,7 @@ impl Build {
         let libraries =
             project.libraries.iter().map(|it| project.folder.join(it)).chain(self.libraries.iter().cloned());
         let mut all: Vec<_> = own.iter().map(|it| (it.clone(), None)).collect();
-        let libraries: Vec<_> = libraries.collect();
-        let is_named = |it: &PathBuf| libraries.iter().any(|library| listing::name(library) == listing::name(it));
-        let siblings = self.paths.iter().flat_map(|it| listing::siblings(it)).filter(|it| !is_named(it));
-        for library in libraries.iter().cloned().chain(siblings) {
-            let name = listing::name(&library);
+        for (library, name) in listing::libraries(&self.paths, libraries) {
             all.extend(files::find(&[library], cargo)?.into_iter().map(|it| (it, Some(name.clone()))));
         }
         for (path, library) in all {

@@ -7,6 +7,7 @@ mod openplc;
 use staunch_frontend::{Reference, Source};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
 
 /// A solution names projects, these name PLC projects, and these sources.
 const DEEPEST: usize = 4;
@@ -90,15 +91,41 @@ pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
     Ok((sources, lists))
 }
 
-/// The PLC projects of the same solution to which one refers as libraries, by their names, and those to which these refer.
-pub fn siblings(project: &Path) -> Vec<PathBuf> {
-    let (mut found, mut waiting) = (Vec::new(), vec![project.to_owned()]);
+/// The libraries of a program, each with what its sources call it by: those that are named, and the PLC projects to which projects
+/// among the arguments refer, where no library is called so.
+pub fn libraries(arguments: &[PathBuf], named: impl Iterator<Item = PathBuf>) -> Vec<(PathBuf, String)> {
+    let lists: Vec<_> = arguments.iter().filter(|it| is_list(it)).filter_map(|it| Some(sources(it).ok()?.1)).collect();
+    let references = references(&lists.concat());
+    let mut all: Vec<_> = named.map(|it| (library_name(&it, &references), it)).map(|(name, it)| (it, name)).collect();
+    for sibling in arguments.iter().flat_map(|it| siblings(it)) {
+        if all.iter().all(|it| !it.1.eq_ignore_ascii_case(&sibling.1)) {
+            all.push(sibling);
+        }
+    }
+    all
+}
+
+/// What sources call a library by: a PLC project's title, where one of the references has it, else its name.
+fn library_name(path: &Path, references: &[Reference]) -> String {
+    let is_wanted = |title: &String| references.iter().any(|it| it.library.eq_ignore_ascii_case(title));
+    title(path).filter(is_wanted).unwrap_or_else(|| name(path))
+}
+
+fn title(path: &Path) -> Option<String> {
+    if has_extension(path, &["plcproj"]) { Source::project_title(&std::fs::read(path).ok()?) } else { None }
+}
+
+/// The PLC projects of the same solution to which one refers as libraries, by their titles or names, and those to which these
+/// refer; each with what it is called.
+fn siblings(project: &Path) -> Vec<(PathBuf, String)> {
+    let (mut found, mut waiting) = (Vec::<(PathBuf, String)>::new(), vec![project.to_owned()]);
     let others = if has_extension(project, &["plcproj"]) { in_its_solution(project) } else { Vec::new() };
     while let Some(it) = waiting.pop() {
-        for wanted in references(core::slice::from_ref(&it)) {
-            let is_it = |other: &&PathBuf| name(other).eq_ignore_ascii_case(&wanted.library) && !found.contains(*other);
-            if let Some(sibling) = others.iter().find(is_it) {
-                found.push(sibling.clone());
+        for wanted in references(from_ref(&it)) {
+            let is_new = |other: &&PathBuf| found.iter().all(|it| it.0 != **other);
+            let is_it = |other: &&PathBuf| library_name(other, from_ref(&wanted)).eq_ignore_ascii_case(&wanted.library);
+            if let Some(sibling) = others.iter().filter(is_new).find(is_it) {
+                found.push((sibling.clone(), wanted.library));
                 waiting.push(sibling.clone());
             }
         }

@@ -18,9 +18,8 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
     if all.is_empty() {
         return Err("no source file was found".to_owned());
     }
-    for library in libraries.iter().chain(&siblings(arguments, libraries)) {
-        let name = listing::name(library);
-        all.extend(found(core::slice::from_ref(library))?.into_iter().map(|it| (it, Some(name.clone()))));
+    for (library, name) in listing::libraries(arguments, libraries.iter().cloned()) {
+        all.extend(found(&[library])?.into_iter().map(|it| (it, Some(name.clone()))));
     }
     if all.len() > usize::from(u16::MAX) {
         return Err(format!("{} files are more than a program may have", all.len()));
@@ -45,13 +44,6 @@ pub fn read(arguments: &[PathBuf], libraries: &[PathBuf]) -> Result<Sources, Str
         sources.name_project(listing::project_name(&lists));
     }
     Ok(sources)
-}
-
-/// The PLC projects that projects among the arguments refer to as libraries, where no library has their name.
-fn siblings(arguments: &[PathBuf], libraries: &[PathBuf]) -> Vec<PathBuf> {
-    let is_named = |it: &PathBuf| libraries.iter().any(|library| listing::name(library) == listing::name(it));
-    let all = arguments.iter().flat_map(|it| listing::siblings(it));
-    all.filter(|it| !is_named(it)).collect()
 }
 
 /// The files that the arguments name, each once, folders in sorted order.

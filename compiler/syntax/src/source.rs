@@ -211,6 +211,11 @@ impl Source {
         vendor::project_name(&Self::decoded("", project).text)
     }
 
+    /// The name by which others refer to a PLC project of TwinCAT's as a library, where it has one.
+    pub fn project_title(project: &[u8]) -> Option<String> {
+        vendor::project_title(&Self::decoded("", project).text)
+    }
+
     /// The same, as one of a library, which a project uses and which is not its own.
     #[must_use]
     pub fn of_library(self, name: &str) -> Self {

@@ -20,7 +20,7 @@ mod xml;
 pub use assembly::{Assembly, Piece, Problem, Trouble};
 pub use device::Device;
 pub use l5x::{controller_service, ladder_instructions};
-pub use listing::{Reference, definitions, listed, project_name, references};
+pub use listing::{Reference, definitions, listed, project_name, project_title, references};
 pub use openplc::is_project as is_openplc_project;
 
 use xml::Reader;

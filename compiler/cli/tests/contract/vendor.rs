@@ -332,7 +332,7 @@ fn a_library_is_called_as_the_project_refers_to_it() {
     folder.staunch("check Line.plcproj").err(0);
 }
 
-/// Libraries that are not available are reported once, not each name; one of the same solution is found by its name.
+/// Libraries that are not available are reported once, not each name; one of the same solution is found by its title or name.
 #[test]
 fn a_library_is_missing_once_or_in_the_solution() {
     let folder = project("library_in_the_solution");
@@ -357,6 +357,17 @@ fn a_library_is_missing_once_or_in_the_solution() {
         Project(\"{B1E7}\") = \"Line\", \"Line.plcproj\", \"{1}\"\nEndProject\n\
         Project(\"{B1E7}\") = \"Core\", \"Core\\Core.plcproj\", \"{2}\"\nEndProject\n";
     folder.write("Plant.sln", solution);
+    folder.staunch("check Line.plcproj").err(0);
+    // A library's name is its title; MSBuild writes some characters of a path as their numbers.
+    std::fs::rename(folder.0.join("Core/base.st"), folder.0.join("Core/base (1) 100%.st")).unwrap();
+    std::fs::remove_file(folder.0.join("Core/Core.plcproj")).unwrap();
+    folder.write("Plant.sln", solution.replace("Core.plcproj", "Parts.plcproj"));
+    let titled = core.replace("<Project>", "<Project><PropertyGroup><Title>Core</Title></PropertyGroup>");
+    folder.write("Core/Parts.plcproj", titled.replace("base.st", "base %281%29 100%.st"));
+    folder.staunch("check Line.plcproj").err(0);
+    std::fs::remove_file(folder.0.join("Plant.sln")).unwrap();
+    folder.staunch("check Line.plcproj").err(1);
+    folder.write("staunch.toml", "libraries = [\"Core/Parts.plcproj\"]");
     folder.staunch("check Line.plcproj").err(0);
 }
 

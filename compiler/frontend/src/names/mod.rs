@@ -235,7 +235,7 @@ impl<'s> Names<'s> {
                 return Found::One(meaning);
             }
             if let Some(entry) = spaces.next().and_then(own) {
-                return Found::One(Meaning::Declared(entry));
+                return Found::One(Meaning::Declared(self.variable_called_as(entry, region, name, sense)));
             }
             // A USING in `NAMESPACE A.B` is in B.
             if let Some(found) = self.used(site, region, name, sense) {
@@ -248,6 +248,18 @@ impl<'s> Names<'s> {
         let of_all = || self.in_libraries(site, name, sense);
         let found = self.in_lists_of(SpaceId::ROOT, name, sense).or_else(of_all);
         found.or_else(|| self.library(site.dialect, name, sense).map(Found::One)).unwrap_or(Found::Nothing)
+    }
+
+    /// The variable of a list that is called as the POU or type that a place finds, where it asks for a variable: `Move : Move;`.
+    fn variable_called_as(&self, found: Entry, region: &Region, name: &str, sense: Sense) -> Entry {
+        let is_type = self.spaces[region.space.0].own.get(&Key(name)).is_some_and(|it| it.ty == Some(found));
+        match is_type && names_variables(sense) && region.outer.is_none() {
+            true => match self.listed_in(region.space, name).as_slice() {
+                [(_, variable)] => *variable,
+                _ => found,
+            },
+            false => found,
+        }
     }
 
     /// What the variables of lists mean by their bare names, of those in the root or in a library.

@@ -60,7 +60,8 @@ pub fn references(text: &str) -> Vec<Reference> {
         match part {
             Part::Open(element) if matches!(element.name, "PlaceholderReference" | "LibraryReference") => {
                 let named = element.attribute(text, "Include").unwrap_or_default();
-                let library = named.split(',').next().unwrap_or_default().trim().to_owned();
+                let library = named.split(',').next().unwrap_or_default();
+                let library = library.trim().trim_matches(['[', ']']).to_owned();
                 found.push(Reference { namespace: library.clone(), library });
             }
             Part::Open(element) => is_namespace = element.name == "Namespace",
@@ -78,10 +79,19 @@ pub fn references(text: &str) -> Vec<Reference> {
 
 /// What a PLC project is called in its first `Name`.
 pub fn project_name(text: &str) -> Option<String> {
+    first(text, "Name")
+}
+
+/// What a PLC project is called when it is a library: by its `Title`.
+pub fn project_title(text: &str) -> Option<String> {
+    first(text, "Title").filter(|it| !it.is_empty())
+}
+
+fn first(text: &str, wanted: &str) -> Option<String> {
     let (mut reader, mut is_it) = (Reader::new(text)?, false);
     while let Ok(Some(part)) = reader.part() {
         match part {
-            Part::Open(element) => is_it = element.name == "Name",
+            Part::Open(element) => is_it = element.name == wanted,
             Part::Text(chunk) if is_it => return Some(text[chunk.place].trim().to_owned()),
             Part::Text(_) => {}
             Part::Close => is_it = false,
@@ -154,6 +164,26 @@ impl Listing {
     }
 }
 
+/// A path as MSBuild writes it: some characters are `%` and two hexadecimal digits.
+fn unescaped(path: &str) -> String {
+    let mut parts = path.split('%');
+    let mut whole = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let code = part.get(..2).filter(|it| it.bytes().all(|it| it.is_ascii_hexdigit()));
+        match code.and_then(|it| u8::from_str_radix(it, 16).ok()).filter(u8::is_ascii_graphic) {
+            Some(character) => {
+                whole.push(char::from(character));
+                whole += &part[2..];
+            }
+            None => {
+                whole.push('%');
+                whole += part;
+            }
+        }
+    }
+    whole
+}
+
 fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Broken> {
     let mut list = Listing::default();
     while let Some(part) = reader.part()? {
@@ -161,7 +191,7 @@ fn sources<'t>(text: &'t str, reader: &mut Reader<'t>) -> Result<Vec<String>, Br
             Part::Open(element) if matches!(element.name, "Compile" | "Folder") => {
                 list.finish_entry();
                 list.entry = element.attribute(text, "Include").map(|path| Entry {
-                    path: path.to_owned(),
+                    path: unescaped(path),
                     is_folder: element.name == "Folder",
                     is_excluded: false,
                 });

@@ -86,7 +86,11 @@ fn task<'t>(file: &'t str, reader: &mut Reader<'t>, element: &Element<'t>, out: 
                             &at,
                         );
                     }
-                    [_, "CycleTime"] => interval = Chunk::words(format!("INTERVAL := T#{text}us, "), &at),
+                    [_, "CycleTime"] => {
+                        // A TIME has whole milliseconds.
+                        let prefix = if text.ends_with("000") { "T" } else { "LTIME" };
+                        interval = Chunk::words(format!("INTERVAL := {prefix}#{text}us, "), &at);
+                    }
                     [_, "Priority"] => priority = Chunk::words(format!("PRIORITY := {text}"), &at),
                     [_, "PouCall", "Name"] if !text.contains('.') && !text.is_empty() => programs.push(chunk),
                     _ => {}

@@ -27,7 +27,7 @@ pub fn head<'t>(file: &'t str, what: What, element: &Element<'t>) -> Vec<Chunk> 
 pub fn interface<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, mut said: Vec<Chunk>) -> Chunks {
     let mut result = Vec::new();
     let mut sections = Vec::new();
-    let mut plain = None;
+    let (mut plain, mut heritage) = (None, Vec::new());
     // Elements that only hold others.
     let mut open = 1_usize;
     while open > 0 {
@@ -37,6 +37,7 @@ pub fn interface<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, mut sai
                     result.push(Chunk::words(" : ", &element.place));
                     result.extend(ty_within(file, reader)?);
                 }
+                ("Extends" | "Implements", _) => heritage.push((element.name, text_within(file, reader)?)),
                 ("InterfaceAsPlainText", _) => plain = Some(reader.content("xhtml")?),
                 (_, Some(keyword)) => sections.extend(variables(file, reader, &element, keyword)?),
                 ("documentation", None) => reader.skip()?,
@@ -54,6 +55,12 @@ pub fn interface<'t>(file: &'t str, reader: &mut Reader<'t>, what: What, mut sai
         return Ok(Vec::new());
     }
     said.extend(result);
+    for (keyword, word) in [("Extends", " EXTENDS "), ("Implements", " IMPLEMENTS ")] {
+        let names = heritage.iter_mut().filter(|it| it.0 == keyword).flat_map(|it| it.1.take());
+        for (name, before) in names.zip(std::iter::once(word).chain(std::iter::repeat(", "))) {
+            said.extend([Chunk::words(before, &name.place), name]);
+        }
+    }
     said.push(Chunk::words("\n", &reader.last()));
     said.extend(sections);
     Ok(said)
@@ -421,4 +428,18 @@ fn item<'t>(file: &'t str, element: &Element<'t>, value: Vec<Chunk>) -> Option<V
         chunks.extend(value);
     }
     Some(chunks)
+}
+
+/// The text of an element that was opened, to its end.
+fn text_within<'t>(file: &'t str, reader: &mut Reader<'t>) -> Result<Option<Chunk>, Broken> {
+    let mut found = None;
+    while let Some(part) = reader.part()? {
+        match part {
+            Part::Text(chunk) if !file[chunk.place.clone()].trim().is_empty() => found = Some(chunk),
+            Part::Text(_) => {}
+            Part::Open(_) => reader.skip()?,
+            Part::Close => break,
+        }
+    }
+    Ok(found)
 }
