@@ -22,6 +22,6 @@ fn two_declarations_beyond_the_last_column_are_refused() {
     let found = reported(65_535, declarations);
     let [one] = found.as_slice() else { panic!("one error expected: {found:?}") };
     assert_eq!(one.code, Code::E0902);
-    assert!(one.message.contains("65534"), "{}", one.message);
+    assert!(one.message.to_string().contains("65534"), "{}", one.message);
     assert!(reported(65_535, "f1 : F(1);\nf2 : F(2);").is_empty(), "each on its own line");
 }

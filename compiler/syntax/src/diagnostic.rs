@@ -3,12 +3,16 @@
 mod codes;
 mod levels;
 mod render;
+mod sentence;
+mod subject;
 pub mod wording;
 
 pub use codes::Code;
 pub use levels::lint;
 pub use levels::{Level, Levels};
 pub use render::{Format, Style, excerpt, render};
+pub use sentence::Sentence;
+pub use subject::{Holder, Missing, Subject};
 
 use crate::source::Span;
 
@@ -37,7 +41,9 @@ pub struct Diagnostic {
     pub code: Code,
     pub severity: Severity,
     /// One sentence in Structured Text words: what is wrong.
-    pub message: String,
+    pub message: Sentence,
+    /// The same as data, where something follows from it.
+    pub subject: Option<Subject>,
     pub span: Span,
     /// What is under the caret: expected and found.
     pub label: Option<String>,
@@ -53,11 +59,12 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// Severity is the code's default.
-    pub fn new(code: Code, span: Span, message: impl Into<String>) -> Self {
+    pub fn new(code: Code, span: Span, message: impl Into<Sentence>) -> Self {
         Self {
             code,
             severity: code.severity(),
             message: message.into(),
+            subject: None,
             span,
             label: None,
             others: Vec::new(),
@@ -66,6 +73,17 @@ impl Diagnostic {
             fix: None,
             in_this_dialect: false,
         }
+    }
+
+    #[must_use]
+    pub fn about(mut self, subject: Subject) -> Self {
+        self.subject = Some(subject);
+        self
+    }
+
+    /// Whether another one is the same sentence, perhaps at another place.
+    pub fn repeats(&self, other: &Self) -> bool {
+        self.code == other.code && self.message == other.message
     }
 
     /// Marks what another dialect would accept without making it right.

@@ -126,7 +126,8 @@ impl<'s> Declarations<'s> {
         let run = self.run_of_program(slot);
         let Some(variable) = self.instance_of_program(slot, run) else { return };
         let bound = run.map(|it| (it, wrapped[it - self.written_pous().len()].bound.as_slice()));
-        let named = NamedProgram { variable: Rc::new(variable), first, is_called, runs, run: bound };
+        let named =
+            NamedProgram { variable: Rc::new(variable), first, is_called, runs, run: bound, is_reported: false };
         self.named_programs.insert(slot, named);
     }
 

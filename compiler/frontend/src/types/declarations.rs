@@ -13,6 +13,7 @@ use super::starts::Starts;
 use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
+use crate::diagnostic::Missing;
 use crate::dialect::rules::is_followed;
 use crate::dialect::{self, Dialect, missing};
 use crate::log::Log;
@@ -367,7 +368,7 @@ impl<'s> Declarations<'s> {
     /// A namespace by which the project refers to a library that is not there.
     pub fn not_there(&self, namespace: &str, place: Span) -> Option<Diagnostic> {
         let help = self.missing_library(namespace)?;
-        let error = Diagnostic::new(Code::E0102, place, format!("there is no namespace `{namespace}`"));
+        let error = Diagnostic::missing(Missing::Namespace, namespace, place);
         Some(error.label("the project refers to a library by this name").help(help))
     }
 
@@ -376,7 +377,7 @@ impl<'s> Declarations<'s> {
         if !missing::is_library(self.dialect(place), namespace) {
             return None;
         }
-        let error = Diagnostic::new(Code::E0102, place, format!("the library `{namespace}` is not available"));
+        let error = Diagnostic::missing(Missing::Library, namespace, place);
         let path = format!("`libraries = [\"…/{namespace}\"]`");
         let help = format!("add its sources to staunch.toml, as a folder or project named `{namespace}`: {path}");
         Some(error.label("it is not bundled with Staunch").help(help))
