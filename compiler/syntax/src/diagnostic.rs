@@ -123,3 +123,61 @@ impl Diagnostic {
         self
     }
 }
+
+/// Each with the sentence, the code and the subject of one kind of mistake.
+impl Diagnostic {
+    /// That nothing has a name.
+    pub fn missing(kind: Missing, name: &str, span: Span) -> Self {
+        Self::new(code_of(kind), span, kind.sentence(name)).about(Subject::Missing { kind, name: name.to_owned() })
+    }
+
+    /// That `holder` has nothing of a name; the code is that of what was looked for.
+    pub fn missing_inside(code: Code, holder: (Holder, &str), name: &str, span: Span) -> Self {
+        let (kind, full) = holder;
+        Self::new(code, span, kind.lacks(full, name))
+            .about(Subject::Missing { kind: Missing::Inside, name: format!("{full}.{name}") })
+    }
+
+    /// That something of this name cannot be compiled yet; `what` is how it is called in the sentence.
+    pub fn unavailable(name: &str, span: Span, what: &str) -> Self {
+        Self::unsupported(span, what).about(Subject::Unavailable { name: name.to_owned() })
+    }
+
+    /// That something cannot be compiled yet.
+    pub fn unsupported(span: Span, what: &str) -> Self {
+        Self::new(Code::E0902, span, format!("{what} is not supported yet"))
+            .label("this version of Staunch cannot compile it")
+    }
+
+    /// That a block is not closed, as far as it was read.
+    pub(crate) fn unclosed(end: String, span: Span, found: &str) -> Self {
+        Self::new(Code::E0014, span, format!("expected {end}, found {found}")).about(Subject::Unclosed { end })
+    }
+
+    /// The same where what follows is not written: the file says in another way where the body ends.
+    pub fn end_with_the_body(&mut self) {
+        if let Some(Subject::Unclosed { end }) = &self.subject
+            && !self.others.is_empty()
+        {
+            self.message = format!("expected {end} before the body ends").into();
+            let opened = self.others.remove(0);
+            (self.span, self.label) = (opened.span, Some(opened.text));
+        }
+    }
+}
+
+const fn code_of(kind: Missing) -> Code {
+    match kind {
+        Missing::Variable | Missing::Owner | Missing::GlobalVariable | Missing::Program | Missing::Task => Code::E0101,
+        Missing::Type
+        | Missing::Enumeration
+        | Missing::FunctionBlock
+        | Missing::Interface
+        | Missing::Namespace
+        | Missing::Library
+        | Missing::InFull
+        | Missing::Inside => Code::E0102,
+        Missing::Callable => Code::E0307,
+        Missing::Step => Code::E0515,
+    }
+}

@@ -1,8 +1,6 @@
-//! What a diagnostic is about, as data: by it, what follows from one mistake is found among the others. For each kind there is one
-//! constructor, which makes the code and the sentence, too.
+//! What a diagnostic is about, as data: by it, what follows from one mistake is found among the others. A constructor of
+//! [`Diagnostic`](super::Diagnostic) makes it together with the code and the sentence.
 
-use super::{Code, Diagnostic};
-use crate::source::Span;
 use staunch_ir::Elementary;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,23 +44,7 @@ pub enum Missing {
 }
 
 impl Missing {
-    const fn code(self) -> Code {
-        match self {
-            Self::Variable | Self::Owner | Self::GlobalVariable | Self::Program | Self::Task => Code::E0101,
-            Self::Type
-            | Self::Enumeration
-            | Self::FunctionBlock
-            | Self::Interface
-            | Self::Namespace
-            | Self::Library
-            | Self::InFull
-            | Self::Inside => Code::E0102,
-            Self::Callable => Code::E0307,
-            Self::Step => Code::E0515,
-        }
-    }
-
-    fn sentence(self, name: &str) -> String {
+    pub(super) fn sentence(self, name: &str) -> String {
         match self {
             Self::Variable | Self::Owner => format!("`{name}` is not declared"),
             Self::Type => format!("there is no type `{name}`"),
@@ -89,47 +71,12 @@ pub enum Holder {
     GlobalList,
 }
 
-impl Diagnostic {
-    /// That nothing has a name.
-    pub fn missing(kind: Missing, name: &str, span: Span) -> Self {
-        Self::new(kind.code(), span, kind.sentence(name)).about(Subject::Missing { kind, name: name.to_owned() })
-    }
-
-    /// That `holder` has nothing of a name; the code is that of what was looked for.
-    pub fn missing_inside(code: Code, holder: (Holder, &str), name: &str, span: Span) -> Self {
-        let (kind, full) = holder;
-        let message = match kind {
-            Holder::Library => format!("the library `{full}` has no `{name}`"),
-            Holder::Namespace => format!("the namespace `{full}` has no `{name}`"),
-            Holder::GlobalList => format!("the list `{full}` has no variable `{name}`"),
-        };
-        Self::new(code, span, message).about(Subject::Missing { kind: Missing::Inside, name: format!("{full}.{name}") })
-    }
-
-    /// That something of this name cannot be compiled yet; `what` is how it is called in the sentence.
-    pub fn unavailable(name: &str, span: Span, what: &str) -> Self {
-        Self::unsupported(span, what).about(Subject::Unavailable { name: name.to_owned() })
-    }
-
-    /// That something cannot be compiled yet.
-    pub fn unsupported(span: Span, what: &str) -> Self {
-        Self::new(Code::E0902, span, format!("{what} is not supported yet"))
-            .label("this version of Staunch cannot compile it")
-    }
-
-    /// That a block is not closed, as far as it was read.
-    pub(crate) fn unclosed(end: String, span: Span, found: &str) -> Self {
-        Self::new(Code::E0014, span, format!("expected {end}, found {found}")).about(Subject::Unclosed { end })
-    }
-
-    /// The same where what follows is not written: the file says in another way where the body ends.
-    pub fn end_with_the_body(&mut self) {
-        if let Some(Subject::Unclosed { end }) = &self.subject
-            && !self.others.is_empty()
-        {
-            self.message = format!("expected {end} before the body ends").into();
-            let opened = self.others.remove(0);
-            (self.span, self.label) = (opened.span, Some(opened.text));
+impl Holder {
+    pub(super) fn lacks(self, full: &str, name: &str) -> String {
+        match self {
+            Self::Library => format!("the library `{full}` has no `{name}`"),
+            Self::Namespace => format!("the namespace `{full}` has no `{name}`"),
+            Self::GlobalList => format!("the list `{full}` has no variable `{name}`"),
         }
     }
 }
