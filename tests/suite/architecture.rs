@@ -224,6 +224,23 @@ fn no_code_of_the_compiler_looks_into_the_words_of_a_message() {
     }
 }
 
+/// How many tables of the front end are keyed by a place in the text, where an id of the declaration is to be: this only falls.
+const KEYED_BY_SPANS: usize = 44;
+
+#[test]
+fn the_front_end_has_no_more_tables_that_are_keyed_by_places() {
+    let keyed = |place: &str| -> Vec<String> {
+        let keys = ["Map<", "Map<(", "Set<", "Set<("].map(|it| format!("{it}{place}"));
+        let is_keyed = |line: &str| keys.iter().any(|it| line.contains(it.as_str())) && !line.trim().starts_with("//");
+        lines_with(is_keyed).into_iter().filter(|it| it.starts_with("compiler/frontend/src/")).collect()
+    };
+    let spans = keyed("Span");
+    assert_eq!(spans.len(), KEYED_BY_SPANS, "more of them need ids; with fewer, lower the number: {spans:#?}");
+    // The column of a `Location` ends at 65,535: it is for people. What is left is of expressions.
+    let locations = keyed("Location");
+    assert!(locations.iter().all(|it| it.contains("pub written: ")) && locations.len() == 1, "{locations:#?}");
+}
+
 #[test]
 fn unsafe_stands_where_it_may() {
     let is_unsafe = |line: &str| {

@@ -158,10 +158,12 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: pou.doc.clone(),
             location: self.location(pou.name.span),
+            declared: None,
         };
         let at = self.add_synthetic(field, None);
         Some(Variable {
             name: pou.name,
+            declared: None,
             place: self.synthetic_place(at),
             resolved: Rc::new(resolved),
             section: Section::Global,

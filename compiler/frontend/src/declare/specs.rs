@@ -726,7 +726,7 @@ impl<'s> Declarations<'s> {
             let ty = Type::Elementary(base);
             let resolved = Rc::new(Resolved { ty, initial: scalar_initial(known.value) });
             let place = staunch_ir::Place::root(staunch_ir::Root::Instance, ty);
-            let variable = self.variable(value.name, &block, resolved, place);
+            let variable = self.variable(value.name, &block, None, resolved, place);
             // A duplicate is reported where the values are declared.
             let _ = scope.insert(Variable { constant: true, ..variable });
         }

@@ -300,6 +300,7 @@ impl<'s> Checker<'_, 's> {
         let local = &self.locals[id.index()];
         local.name.eq_ignore_ascii_case(name.text).then(|| Variable {
             name,
+            declared: None,
             place: Place::local(*id, resolved.ty),
             resolved: Rc::new(resolved.clone()),
             section: Section::Internal,

@@ -192,8 +192,10 @@ pub(crate) struct Declarations<'s> {
     /// called of that.
     pub dispatches: FxHashMap<(Type, Type, usize), usize>,
     pub overloads: Overloads,
+    /// The variables and members that became fields: a field has its number here.
+    pub declared: Vec<(ast::Name<'s>, &'s ast::VarDecl<'s>)>,
     /// What declarations say of the start of instances.
-    pub starts: Starts<'s>,
+    pub starts: Starts,
     /// The pools that `__NEW` takes objects from, by their types; `None` for one that was refused.
     pub pools: FxHashMap<Type, Option<Pool>>,
     /// The types of which `__NEW` asks for arrays, and no pool has any: that was reported.
@@ -230,6 +232,7 @@ impl<'s> Declarations<'s> {
             generics: Generics::default(),
             dispatches: FxHashMap::default(),
             overloads: Overloads::default(),
+            declared: Vec::new(),
             starts: Starts::default(),
             pools: FxHashMap::default(),
             pools_missing: FxHashSet::default(),
@@ -412,6 +415,11 @@ impl<'s> Declarations<'s> {
         if !is_followed(dialect, Part::EvaluationOrder) {
             self.touched.insert(RoutineId::next(slot), Own::of(&routine.body));
         }
+    }
+
+    /// The declaration of a field, and the name in it.
+    pub fn declaration_of(&self, field: &staunch_ir::Field) -> Option<(ast::Name<'s>, &'s ast::VarDecl<'s>)> {
+        field.declared.map(|it| self.declared[it.index()])
     }
 
     /// The class whose declaration has a name.
