@@ -6,6 +6,9 @@
 #[path = "src/case.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod case;
+#[path = "src/long_line.rs"]
+#[allow(dead_code, reason = "the crate uses more of it")]
+mod long_line;
 #[path = "src/operation.rs"]
 #[allow(dead_code, reason = "the crate uses more of it")]
 mod operation;
@@ -36,6 +39,7 @@ fn main() {
     for path in [
         "build.rs",
         "src/case.rs",
+        "src/long_line.rs",
         "src/operation.rs",
         "src/pointers.rs",
         "src/random.rs",
@@ -57,6 +61,7 @@ fn main() {
     let pointers = 0..pointers::PRINTED;
     subjects.extend(pointers.map(|it| Subject::text(&pointers::module(it), pointers::program(it), codesys())));
     subjects.push(Subject::text("rows", rows::program(), Options::default()));
+    subjects.push(Subject::text(long_line::MODULE, long_line::program(), Options::default()));
     let operations = || Some(operation::program(&operation::Task::all()));
     subjects.push(Subject { module: "operations".to_owned(), compile: Box::new(operations) });
 

@@ -13,6 +13,7 @@ pub mod leaf;
 pub mod difference;
 pub mod golden;
 
+pub mod long_line;
 pub mod operation;
 pub mod pointers;
 pub mod random;

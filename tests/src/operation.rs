@@ -161,6 +161,7 @@ fn structure(task: Task) -> Struct {
         address: None,
         doc: None,
         location: AT,
+        declared: None,
     };
     Struct::new(task.name(), None, AT, fields(task).into_iter().map(field).collect())
 }

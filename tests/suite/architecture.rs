@@ -177,6 +177,73 @@ fn no_code_unwraps() {
     assert!(offending.is_empty(), "{}", offending.join("\n"));
 }
 
+/// What may follow the sentence of a diagnostic, or of anything else that is shown: it is passed on or shown as a whole.
+const LOOKS: [&str; 19] = [
+    "starts_with",
+    "ends_with",
+    "contains",
+    "find",
+    "rfind",
+    "split",
+    "rsplit",
+    "strip_",
+    "trim",
+    "matches",
+    "replace",
+    "lines",
+    "chars",
+    "bytes",
+    "as_bytes",
+    "char_indices",
+    "get",
+    "eq",
+    "eq_ignore_ascii_case",
+];
+
+#[test]
+fn no_code_of_the_compiler_looks_into_the_words_of_a_message() {
+    let mut offending = Vec::new();
+    for (path, text) in sources().into_iter().filter(|(path, _)| path.starts_with("compiler/")) {
+        let code: String = text.split("#[cfg(test)]\nmod tests {").next().unwrap().split_whitespace().collect();
+        for field in [".message", ".label", ".help", ".notes"] {
+            let words = code.split(field).skip(1).filter(|rest| {
+                let rest = ["()", ".as_str()", ".to_string()", ".clone()", ".as_deref()", ".as_ref()", "?"]
+                    .iter()
+                    .fold(*rest, |rest, passed| rest.strip_prefix(passed).unwrap_or(rest));
+                let looks = rest.strip_prefix('.').is_some_and(|it| LOOKS.iter().any(|look| it.starts_with(look)));
+                looks || rest.starts_with("==\"") || rest.starts_with("!=\"") || rest.starts_with('[')
+            });
+            offending.extend(words.map(|rest| format!("{path}: {field}{}", rest.get(..60).unwrap_or(rest))));
+        }
+    }
+    assert!(offending.is_empty(), "a diagnostic's `subject` says what it is about: {offending:#?}");
+    // Its type shows the words to nobody but those who lay a diagnostic out.
+    let sentence = std::fs::read_to_string(project().join("compiler/syntax/src/diagnostic/sentence.rs")).unwrap();
+    for open in ["pub fn ", "pub struct Sentence(pub", "pub String", "Deref", "AsRef", "Borrow", "for String"] {
+        assert!(!sentence.contains(open), "`{open}` opens the words of a message");
+    }
+}
+
+/// How many tables of the front end are keyed by a place in the text, where an id of the declaration is to be: this only falls.
+const KEYED_BY_SPANS: usize = 46;
+
+#[test]
+fn the_front_end_has_no_more_tables_that_are_keyed_by_places() {
+    let mut paths = Vec::new();
+    list(&project().join("compiler/frontend/src"), &mut paths);
+    let texts: Vec<_> = paths.iter().map(|it| std::fs::read_to_string(it).unwrap()).collect();
+    let keyed = |place: &str| -> Vec<&str> {
+        let keys = ["Map<", "Map<(", "Set<", "Set<("].map(|it| format!("{it}{place}"));
+        let lines = texts.iter().flat_map(|it| it.lines());
+        lines.filter(|line| keys.iter().any(|it| line.contains(it.as_str()))).collect()
+    };
+    let spans = keyed("Span");
+    assert_eq!(spans.len(), KEYED_BY_SPANS, "more of them need ids; with fewer, lower the number: {spans:#?}");
+    // The column of a `Location` ends at 65,535: it is for people. What is left is of expressions.
+    let locations = keyed("Location");
+    assert!(locations.iter().all(|it| it.contains("pub written: ")) && locations.len() == 1, "{locations:#?}");
+}
+
 #[test]
 fn unsafe_stands_where_it_may() {
     let is_unsafe = |line: &str| {

@@ -44,7 +44,7 @@ fn is_same(case: &Case) -> Option<Result<(), String>> {
     let converted = staunch_frontend::compile(&sources.as_one_file("all.st", None), &case.settings().options);
     let Some(other) = converted.program else {
         let first = converted.diagnostics.iter().find(|it| it.severity == staunch_frontend::Severity::Error);
-        return Some(Err(first.map_or_else(String::new, |it| it.message.clone())));
+        return Some(Err(first.map_or_else(String::new, |it| it.message.to_string())));
     };
     let (program, other) = (print_without_places(&program), print_without_places(&other));
     let differ = || program.lines().zip(other.lines()).find(|(a, b)| a != b);

@@ -45,13 +45,12 @@ fn applied(sources: &Sources, fix: &Fix) -> Sources {
 fn problem(before: &[Diagnostic], after: &[Diagnostic], mended: &Diagnostic, fix: &Fix) -> Option<String> {
     let end = fix.span.start + u32::try_from(fix.replacement.len()).unwrap();
     let place = Span { end, ..fix.span };
-    let is_new = |it: &&Diagnostic| !before.iter().any(|old| old.code == it.code && old.message == it.message);
+    let is_new = |it: &&Diagnostic| !before.iter().any(|old| old.repeats(it));
     let mut errors = after.iter().filter(|it| it.severity == Severity::Error);
     if let Some(error) = errors.find(|it| is_new(it) && touches(it.span, place)) {
         return Some(format!("brings {}: {}", error.code.name(), error.message));
     }
-    let same =
-        |all: &[Diagnostic]| all.iter().filter(|it| it.code == mended.code && it.message == mended.message).count();
+    let same = |all: &[Diagnostic]| all.iter().filter(|it| it.repeats(mended)).count();
     if same(after) >= same(before) {
         return Some("leaves it".to_owned());
     }

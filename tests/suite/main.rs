@@ -11,6 +11,7 @@ mod constants;
 mod converted;
 mod effects;
 mod facts;
+mod long_lines;
 mod native_code;
 mod operations;
 mod own_names;

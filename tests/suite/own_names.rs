@@ -144,7 +144,7 @@ fn try_all(dialect: Dialect, way: &Way, words: &[String], wrong: &mut Vec<String
         return try_all(dialect, way, &rest, wrong);
     }
     if let [word] = words {
-        let messages: Vec<_> = errors().map(|it| it.message.as_str()).collect();
+        let messages: Vec<_> = errors().map(|it| it.message.to_string()).collect();
         wrong.push(format!("{}: `{word}` as {}: {}", dialect.name(), way.what, messages.join("; ")));
         return 0;
     }

@@ -19,7 +19,7 @@ fn sources(text: String) -> Sources {
 fn errors(text: &str) -> HashMap<usize, String> {
     let compilation = compile(&sources(text.to_owned()), &Options::default());
     let errors = compilation.diagnostics.into_iter().filter(|it| it.severity == Severity::Error);
-    errors.map(|it| (text[..it.span.start as usize].matches('\n').count(), it.message)).collect()
+    errors.map(|it| (text[..it.span.start as usize].matches('\n').count(), it.message.to_string())).collect()
 }
 
 #[test]

@@ -109,7 +109,7 @@ impl Session {
         let compilation = staunch_frontend::compile(&sources, &options);
         let mut errors: Vec<_> = compilation.diagnostics.iter().filter(|it| it.severity == Severity::Error).collect();
         // The same expression is asked at several places.
-        errors.dedup_by(|a, b| a.message == b.message && a.span.start == b.span.start);
+        errors.dedup_by(|a, b| a.span.start == b.span.start && a.repeats(b));
         let (format, style) = (self.format(), Style { color: self.color() });
         let rendered = errors.into_iter().map(|it| staunch_frontend::render(it, &sources, format, style)).collect();
         Ok((compilation.program, rendered))

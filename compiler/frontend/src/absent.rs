@@ -1,5 +1,6 @@
 //! A project that refers to libraries which are not available: they are named once, in place of each unknown name.
 
+use crate::diagnostic::{Missing, Subject};
 use crate::dialect::library;
 use crate::{Code, Diagnostic, Dialect, Sources};
 
@@ -10,17 +11,17 @@ const SHOWN: usize = 8;
 /// not available. A name that is like a known one is a mistake of its own.
 pub(crate) fn deduplicate_missing(diagnostics: Vec<Diagnostic>, sources: &Sources) -> Vec<Diagnostic> {
     let absent = absent_libraries(sources);
-    if absent.is_empty() || diagnostics.iter().filter(|it| is_unknown(it)).nth(1).is_none() {
+    if absent.is_empty() || diagnostics.iter().filter_map(unknown).nth(1).is_none() {
         return diagnostics;
     }
-    let (unknown, mut kept): (Vec<_>, Vec<_>) = diagnostics.into_iter().partition(is_unknown);
+    let (missing, mut kept): (Vec<_>, Vec<_>) = diagnostics.into_iter().partition(|it| unknown(it).is_some());
     let mut names: Vec<&str> = Vec::new();
-    for name in unknown.iter().map(|it| sources.text(it.span)) {
+    for name in missing.iter().filter_map(unknown) {
         if !library::is_one_of(&names, name) {
             names.push(name);
         }
     }
-    if let Some(first) = unknown.first() {
+    if let Some(first) = missing.first() {
         kept.push(named_once(first, &absent, &names));
     }
     kept.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
@@ -64,18 +65,25 @@ fn absent_libraries(sources: &Sources) -> Vec<&str> {
 const NAMELESS: [&str; 7] =
     ["System_Visu", "Visu", "Breakpoint", "TcUnit", "IBaseLibrary", "Base Interfaces", "Tc3_Interfaces"];
 
-fn is_unknown(it: &Diagnostic) -> bool {
-    const STARTS: [&str; 5] = [
-        "there is no type `",
-        "there is no FUNCTION_BLOCK `",
-        "there is no INTERFACE `",
-        "there is no namespace `",
-        "there is no function or instance `",
-    ];
-    let is_named = STARTS.iter().any(|start| it.message.starts_with(start));
-    match it.code {
-        Code::E0102 | Code::E0307 => is_named && it.fix.is_none(),
-        Code::E0101 => it.message.ends_with(" is not declared") && it.fix.is_none(),
-        _ => false,
-    }
+/// The name that a diagnostic reports as unknown, if a library could have it.
+fn unknown(it: &Diagnostic) -> Option<&str> {
+    let Some(Subject::Missing { kind, name }) = it.subject.as_ref().filter(|_| it.fix.is_none()) else { return None };
+    let may_be_of_library = match kind {
+        Missing::Variable
+        | Missing::Owner
+        | Missing::Type
+        | Missing::FunctionBlock
+        | Missing::Interface
+        | Missing::Namespace
+        | Missing::Callable => true,
+        Missing::Enumeration
+        | Missing::Library
+        | Missing::InFull
+        | Missing::Inside
+        | Missing::GlobalVariable
+        | Missing::Program
+        | Missing::Task
+        | Missing::Step => false,
+    };
+    may_be_of_library.then_some(name)
 }

@@ -9,6 +9,7 @@ use crate::added::{ACTIONS, CLOCK, FIRED};
 use crate::ast::{
     Chart, File, Item, Name, Pou, PouKind, Statement, StatementKind, Transition, TypeKind, VarBlock, VarKind,
 };
+use crate::diagnostic::Missing;
 use crate::dialect::Dialect;
 use crate::log::Log;
 use crate::spelling::Key;
@@ -88,8 +89,7 @@ fn is_sound<'s>(chart: &Chart<'s>, pou: &Pou<'s>, log: &mut Log<'_>) -> bool {
     let named = |name: &Name<'_>| chart.steps.iter().any(|it| Key(it.name.text) == Key(name.text));
     let mut is_sound = true;
     for name in chart.transitions.iter().flat_map(|it| it.from.iter().chain(&it.to)).filter(|it| !named(it)) {
-        let it = Diagnostic::new(Code::E0515, name.span, format!("there is no step `{}`", name.text))
-            .label("not a step of this chart");
+        let it = Diagnostic::missing(Missing::Step, name.text, name.span).label("not a step of this chart");
         log.report(match nearest(name.text, chart.steps.iter().map(|it| it.name.text)) {
             Some(meant) => it.help(format!("did you mean `{meant}`?")).fix(name.span, meant),
             None => it.help("declare it: `STEP Name: END_STEP`"),

@@ -7,7 +7,7 @@
 mod classes;
 
 use crate::ast::{Access, Expr, ExprKind, File, Item, Name, Pou, PouKind, VarKind, each_expr};
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Missing};
 use crate::log::Log;
 use crate::source::Span;
 use crate::spelling::{Key, nearest};
@@ -180,8 +180,8 @@ impl<'s> Expansion<'_, 's> {
                 }
                 let others = self.classes.all.iter().map(|it| it.pou.name.text);
                 let names = others.filter(|it| Key(it) != Key(pou.name.text));
-                let message = format!("there is no FUNCTION_BLOCK `{}`", base.text);
-                let error = Diagnostic::new(Code::E0102, base.span, message).label("expected one to extend");
+                let error =
+                    Diagnostic::missing(Missing::FunctionBlock, base.text, base.span).label("expected one to extend");
                 self.diagnostics.push(match nearest(base.text, names) {
                     Some(near) => error.help(format!("did you mean `{near}`?")).fix(base.span, near),
                     None => error,

@@ -41,7 +41,7 @@ mod lints;
 
 pub use staunch_syntax::{ast, format, vendor};
 
-pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, excerpt, render};
+pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, Subject, excerpt, render};
 pub use dialect::{Dialect, rules};
 pub use index::{DefId, Definition, DefinitionKind, Index, Meaning, Offer, Use};
 pub use mutate::{Mutant, mutants};
@@ -58,7 +58,7 @@ pub use vendor::Reference;
 use staunch_syntax::{diagnostic, foreign, lex, parse, source, spelling};
 
 use index::recorder::Recorder;
-use lex::{Declared, Known, Subject};
+use lex::{Declared, Known};
 use log::Log;
 use rustc_hash::FxHashSet;
 use staunch_ir::Program;
@@ -94,7 +94,7 @@ impl Compilation {
     fn settle(&mut self, sources: &Sources, allowances: &allow::Allowances) {
         library::of_own_sources(&mut self.diagnostics, sources);
         // SETUP is a part of each test.
-        self.diagnostics.dedup_by(|a, b| (a.code, a.span) == (b.code, b.span) && a.message == b.message);
+        self.diagnostics.dedup_by(|a, b| a.span == b.span && a.repeats(b));
         let renamed = self.diagnostics.iter().filter(|it| it.code == Code::W0609);
         self.renamed = renamed.filter_map(|it| it.fix.clone()).collect();
         self.diagnostics.retain(|it| !allowances.cover(it));
@@ -115,8 +115,7 @@ impl Compilation {
     /// Adds what else there is to say of the same sources.
     fn add(&mut self, diagnostics: Vec<Diagnostic>) {
         for it in diagnostics {
-            let is_known =
-                |known: &Diagnostic| (known.code, known.span) == (it.code, it.span) && known.message == it.message;
+            let is_known = |known: &Diagnostic| known.span == it.span && known.repeats(&it);
             if !self.diagnostics.iter().any(is_known) {
                 self.diagnostics.push(it);
             }
@@ -400,7 +399,7 @@ fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnosti
 }
 
 /// Whether the library has a type or a POU with this name, in some dialect. `None` if it may be either.
-fn library_has(subject: Subject, name: &str) -> Option<bool> {
+fn library_has(subject: lex::Subject, name: &str) -> Option<bool> {
     let is_text = name.eq_ignore_ascii_case("STRING") || name.eq_ignore_ascii_case("WSTRING");
     let is_type = is_text || staunch_ir::Elementary::named(name).is_some();
     let is_block = |it: &staunch_runtime::BlockInfo| it.name.eq_ignore_ascii_case(name);
@@ -408,22 +407,17 @@ fn library_has(subject: Subject, name: &str) -> Option<bool> {
         || staunch_runtime::BLOCKS.iter().any(is_block)
         || prelude::units(name).any(|it| it.is_function());
     match subject {
-        Subject::Type if is_type => Some(true),
-        Subject::Pou if is_pou => Some(true),
-        Subject::Type | Subject::Pou if prelude::units(name).next().is_some() => None,
-        Subject::Type | Subject::Pou | Subject::Variable | Subject::Task => Some(false),
+        lex::Subject::Type if is_type => Some(true),
+        lex::Subject::Pou if is_pou => Some(true),
+        lex::Subject::Type | lex::Subject::Pou if prelude::units(name).next().is_some() => None,
+        lex::Subject::Type | lex::Subject::Pou | lex::Subject::Variable | lex::Subject::Task => Some(false),
     }
 }
 
 /// The files of systems that keep bodies separately have no word that ends a body, so the diagnostic does not show one.
 fn at_the_end_of_a_body(it: &mut Diagnostic, source: &Source) {
-    if it.code != Code::E0014 || source.is_verbatim(it.span) {
-        return;
-    }
-    if let (Some((expected, _)), false) = (it.message.split_once(", found "), it.others.is_empty()) {
-        it.message = format!("{expected} before the body ends");
-        let opened = it.others.remove(0);
-        (it.span, it.label) = (opened.span, Some(opened.text));
+    if !source.is_verbatim(it.span) {
+        it.end_with_the_body();
     }
 }
 
@@ -476,7 +470,7 @@ fn finish(
         diagnostics.extend(unassigned);
     }
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
-    let diagnostics = said_once::said_once(absent::deduplicate_missing(diagnostics, sources), sources, units);
+    let diagnostics = said_once::said_once(absent::deduplicate_missing(diagnostics, sources), units);
     if let (Some(span), false) = (left_out, rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }

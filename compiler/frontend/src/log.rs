@@ -64,7 +64,7 @@ impl<'s> Log<'s> {
     }
 
     pub fn not_supported(&mut self, span: Span, what: &str) {
-        self.report(unsupported(span, what));
+        self.report(Diagnostic::unsupported(span, what));
     }
 
     /// Notes what a name means, where that is asked for.
@@ -153,9 +153,4 @@ impl<'s> Log<'s> {
         let start = source.in_text(offset(start + before)).unwrap_or(0);
         Span { file: at.file, start, end: start + offset(name) }
     }
-}
-
-pub(crate) fn unsupported(span: Span, what: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0902, span, format!("{what} is not supported yet"))
-        .label("this version of Staunch cannot compile it")
 }

@@ -638,7 +638,7 @@ impl Extended {
                 None => kept.push(it),
                 Some(unit) if it.severity == Severity::Error => {
                     let error = self.named[unit].unfit(&it);
-                    if !kept.iter().any(|known| (known.span, &known.message) == (error.span, &error.message)) {
+                    if !kept.iter().any(|known| known.span == error.span && known.repeats(&error)) {
                         kept.push(error);
                     }
                 }

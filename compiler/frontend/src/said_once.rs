@@ -1,47 +1,45 @@
 //! A mistake that shows in many places is reported at the first of them, with the number of the others: what exists nowhere,
 //! and what a POU does not declare.
 
-use crate::{Code, Diagnostic, Sources, Span, ast};
-use rustc_hash::FxHashMap;
+use crate::diagnostic::{Missing, Subject};
+use crate::{Diagnostic, Span, ast};
+use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Of what is refused by its name, what programs name in many places.
-const NAMED_ONCE: [&str; 4] = [" of Tc2_Utilities ", " of Util ", " __VARINFO ", "`__CURRENTTASK`"];
+/// What was looked for, as far as another place where the name is missing may be the same mistake.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+enum Sought {
+    /// What programs declare for all of their POUs, and instances that are called.
+    Declared,
+    /// A namespace, or a library.
+    Namespace,
+    /// What a namespace or a library has.
+    Inside,
+    /// What has members: any of these, or a variable.
+    Owner,
+    /// A variable, which another POU may have.
+    Variable,
+}
+
+/// A name that is missing, in one case.
+type Named = (Sought, String);
 
 /// What is there nowhere is one mistake, however often it is named: the first place is reported, with the number of
 /// the others.
-pub(crate) fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources, units: &[Span]) -> Vec<Diagnostic> {
-    let mut first: FxHashMap<(Code, String, usize), (usize, usize)> = FxHashMap::default();
+pub(crate) fn said_once(diagnostics: Vec<Diagnostic>, units: &[Span]) -> Vec<Diagnostic> {
+    let all: FxHashSet<Named> = diagnostics.iter().filter_map(named).collect();
+    let mut first: FxHashMap<(Named, usize), (usize, usize)> = FxHashMap::default();
     let mut kept: Vec<Diagnostic> = Vec::with_capacity(diagnostics.len());
     for it in diagnostics {
-        // `Severity.Info` of an enumeration, list or namespace that is not there.
-        let is_owner = || {
-            let after = sources.get(it.span.file).text.get(usize::try_from(it.span.end).unwrap_or(usize::MAX)..);
-            is_undeclared(&it) && after.is_some_and(|it| it.starts_with('.'))
-        };
-        // What a POU lacks, another may have.
-        let unit = match it.code {
-            Code::E0101 if !is_owner() => {
-                units.partition_point(|unit| (unit.file, unit.start) <= (it.span.file, it.span.start))
-            }
-            _ => 0,
-        };
-        let is_missing = match it.code {
-            Code::E0102 | Code::E0307 => {
-                let of_library = it.message.starts_with("the library `") && it.fix.is_none();
-                of_library || it.message.starts_with("there is no ")
-            }
-            // Who takes a similar name's place corrects each use.
-            Code::E0101 => is_owner() || is_undeclared(&it) && it.fix.is_none(),
-            Code::E0902 => NAMED_ONCE.iter().any(|name| it.message.contains(name)),
-            _ => false,
-        };
-        if !is_missing {
+        let Some(named) = named(&it).map(|it| meant(it, &all)) else {
             kept.push(it);
             continue;
-        }
+        };
+        let unit = match named.0 {
+            Sought::Variable => units.partition_point(|unit| (unit.file, unit.start) <= (it.span.file, it.span.start)),
+            Sought::Declared | Sought::Namespace | Sought::Inside | Sought::Owner => 0,
+        };
         let place = kept.len();
-        let (_, others) =
-            first.entry((it.code, it.message.clone(), unit)).and_modify(|it| it.1 += 1).or_insert((place, 0));
+        let (_, others) = first.entry((named, unit)).and_modify(|it| it.1 += 1).or_insert((place, 0));
         if *others == 0 {
             kept.push(it);
         }
@@ -53,8 +51,42 @@ pub(crate) fn said_once(diagnostics: Vec<Diagnostic>, sources: &Sources, units: 
     kept
 }
 
-fn is_undeclared(it: &Diagnostic) -> bool {
-    it.message.ends_with(" is not declared")
+/// What has members is what the name was to be elsewhere.
+fn meant((sought, name): Named, all: &FxHashSet<Named>) -> Named {
+    let others: &[Sought] = match sought {
+        Sought::Owner => &[Sought::Declared, Sought::Namespace],
+        Sought::Variable => &[Sought::Owner],
+        Sought::Declared | Sought::Namespace | Sought::Inside => &[],
+    };
+    for other in others {
+        let it = (*other, name.clone());
+        if all.contains(&it) {
+            return meant(it, all);
+        }
+    }
+    (sought, name)
+}
+
+/// `None` for what is a mistake at each of its places.
+fn named(it: &Diagnostic) -> Option<Named> {
+    let (kind, name) = match it.subject.as_ref()? {
+        Subject::Missing { kind, name } => (*kind, name),
+        Subject::Unavailable { name } => return Some((Sought::Declared, name.to_ascii_uppercase())),
+        Subject::Beyond(_) | Subject::Mismatch(..) | Subject::Unclosed { .. } => return None,
+    };
+    let sought = match kind {
+        // Who takes a similar name's place corrects each use.
+        Missing::Variable | Missing::Inside if it.fix.is_some() => return None,
+        Missing::Variable => Sought::Variable,
+        Missing::Owner => Sought::Owner,
+        Missing::Inside | Missing::InFull => Sought::Inside,
+        Missing::Namespace | Missing::Library => Sought::Namespace,
+        Missing::Type | Missing::Enumeration | Missing::FunctionBlock | Missing::Interface | Missing::Callable => {
+            Sought::Declared
+        }
+        Missing::GlobalVariable | Missing::Program | Missing::Task | Missing::Step => return None,
+    };
+    Some((sought, name.to_ascii_uppercase()))
 }
 
 /// Where the names of all POUs are, in the order of the files and of their lines.

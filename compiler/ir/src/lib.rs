@@ -71,9 +71,9 @@ pub use op::{Op, TextOp, apply, apply_text};
 pub use place::{Place, Projection, Root};
 pub use print::{print, print_without_places};
 pub use program::{
-    Address, Area, Bound, Class, ClassId, ClassKind, Field, FieldId, HELD_PROGRAM, Instance, Local, LocalId, Mode,
-    Module, Param, ParamId, Program, Reach, Retain, Routine, RoutineId, RoutineKind, Section, SourceFile, Variable,
-    View,
+    Address, Area, Bound, Class, ClassId, ClassKind, DeclarationId, Field, FieldId, HELD_PROGRAM, Instance, Local,
+    LocalId, Mode, Module, Param, ParamId, Program, Reach, Retain, Routine, RoutineId, RoutineKind, Section,
+    SourceFile, Variable, View,
 };
 pub use statement::{Argument, Arm, Block, Count, For, Statement, StatementKind, Step, Taking};
 pub use uses::{Part, Use, Uses};

@@ -17,6 +17,8 @@ ids! {
     ParamId;
     /// Position of a field in its structure, or of a pin in its standard block.
     FieldId;
+    /// Index into the front end's table of the variables and members that the source declares.
+    DeclarationId;
 }
 
 /// A whole checked program.
@@ -207,6 +209,8 @@ pub struct Field {
     pub address: Option<Address>,
     pub doc: Option<String>,
     pub location: Location,
+    /// Which of the front end's declarations it is: the location is for people, and its column ends at 65,535.
+    pub declared: Option<DeclarationId>,
 }
 
 /// What a declaration says of a restart.

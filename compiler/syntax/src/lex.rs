@@ -53,7 +53,7 @@ pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Know
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
-    let mut reading = Reading { file, text, tokens, named: Vec::new(), unknown: false };
+    let mut reading = Reading { file, text, tokens, named: Vec::new(), unknown: false, has_external: false };
     let mut scanner = Scanner::new(text);
     while let Some(kind) = scanner.next() {
         let range = scanner.span();
@@ -77,6 +77,8 @@ struct Reading<'s> {
     named: Vec<&'s str>,
     /// The last token is a run of unknown characters.
     unknown: bool,
+    /// `@EXTERNAL` has been reported.
+    has_external: bool,
 }
 
 impl<'s> Reading<'s> {
@@ -223,13 +225,13 @@ impl<'s> Reading<'s> {
 
     /// ruSTy's word for a POU that is implemented elsewhere: reported once in a file.
     fn report_external(&mut self, place: (u32, u32)) {
-        const MESSAGE: &str = "`@EXTERNAL` is ruSTy's pragma for POUs that are implemented elsewhere";
-        if self.tokens.diagnostics.iter().any(|it| it.message == MESSAGE) {
+        if std::mem::replace(&mut self.has_external, true) {
             return;
         }
+        let message = "`@EXTERNAL` is ruSTy's pragma for POUs that are implemented elsewhere";
         let end = place.1 + 8;
         self.tokens.diagnostics.push(
-            Diagnostic::new(Code::E0002, self.span((place.0, end)), MESSAGE)
+            Diagnostic::new(Code::E0002, self.span((place.0, end)), message)
                 .label("Staunch has another pragma for it")
                 .help("write `{external}` before each FUNCTION and FUNCTION_BLOCK that is implemented in Rust or C")
                 .note("standard functions such as `INT_TO_STRING` need no declaration"),

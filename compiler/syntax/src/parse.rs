@@ -118,12 +118,11 @@ pub fn parse_with<'s>(
 /// The expression that is all of a text. `None` where it does not parse, which is reported.
 pub fn parse_expression<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> Option<Expr<'s>> {
     let mut tokens = lex_with(file, text, &[], Known::Never);
-    let mut state = State::new(file, text, &tokens, namespace::file(file, text));
+    let mut state = State { is_expression: true, ..State::new(file, text, &tokens, namespace::file(file, text)) };
     let kinds: &[Kind] = &state.tokens.kinds;
     let expr = whole_expression(kinds, &mut state);
     let mut found = state.diagnostics;
     found.append(&mut tokens.diagnostics);
-    found.iter_mut().for_each(|it| it.message = it.message.replace("the end of the file", "the end of the expression"));
     let is_wrong = found.iter().any(|it| it.severity == Severity::Error);
     diagnostics.append(&mut found);
     expr.filter(|_| !is_wrong)

@@ -274,6 +274,7 @@ impl<'s> Checker<'_, 's> {
             address: None,
             doc: None,
             location: at,
+            declared: None,
         });
         let place = Place::root(Root::Instance, Type::Struct(state)).field(id, ty);
         let variable = Variable { name: name.clone(), section: Section::Internal, place: place.clone(), view: None };

@@ -194,7 +194,7 @@ impl<'s> Checker<'_, 's> {
         if !is_named || error.code != Code::E0202 {
             return false;
         }
-        let why = error.message.clone();
+        let why = error.message.to_string();
         self.decl.log.diagnostics.truncate(reported);
         self.report(Diagnostic::new(Code::W0512, label.span, "this CASE label is never chosen").label(why));
         true

@@ -291,6 +291,7 @@ impl<'s> Checker<'_, 's> {
             address: None,
             doc: None,
             location: at,
+            declared: None,
         });
         (name, Place::root(Root::Globals, Type::Struct(globals)).field(id, ty))
     }

@@ -321,6 +321,7 @@ impl<'s> Declarations<'s> {
             address: Some(address),
             doc: None,
             location: if is_named { self.location(name.span) } else { staunch_ir::Location::default() },
+            declared: None,
         };
         self.add_synthetic(field, is_named.then_some(name))
     }

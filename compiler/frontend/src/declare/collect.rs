@@ -1,6 +1,7 @@
 //! The names at file level.
 
 use super::list::Lists;
+use crate::diagnostic::Missing;
 use crate::dialect::{Dialect, missing};
 use crate::names::{Entry, Found, Sense, SpaceId};
 use crate::spelling::Key;
@@ -39,7 +40,7 @@ impl<'s> Declarations<'s> {
                 Found::Several(meanings) => self.report_ambiguous(*last, &meanings),
                 Found::Nothing if self.names.root(last.text).is_some() || !self.names.holders(last.text).is_empty() => {
                     let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
-                    let mut error = Diagnostic::new(Code::E0102, last.span, format!("there is no `{full}`"));
+                    let mut error = Diagnostic::missing(Missing::InFull, &full, last.span);
                     if around.is_empty()
                         && let Some(hint) = self.hint_of_namespace(*last)
                     {
@@ -249,10 +250,10 @@ impl<'s> Declarations<'s> {
         }
         let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
         if let Some(help) = missing::namespace(&full) {
-            let error = crate::log::unsupported(first.span.to(last.span), &format!("`{full}`"));
+            let error = Diagnostic::unavailable(&full, first.span.to(last.span), &format!("`{full}`"));
             return self.report(error.help(help));
         }
-        let error = Diagnostic::new(Code::E0102, first.span.to(last.span), format!("there is no namespace `{full}`"))
+        let error = Diagnostic::missing(Missing::Namespace, &full, first.span.to(last.span))
             .label("no file of the program declares it");
         let near = crate::spelling::nearest(&full, self.names.namespaces()).map(str::to_owned);
         self.report(match near {

@@ -73,6 +73,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: None,
             location: self.location(constant.name.span),
+            declared: None,
         };
         self.add_synthetic(field, None)
     }

@@ -4,6 +4,7 @@
 //! resolved. A CONSTANT is known before, as it may size what the POU declares.
 
 use crate::ast::{self, VarKind};
+use crate::diagnostic::Missing;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::nearest;
 use crate::types::declarations::{Declarations, GlobalSlot, Slot};
@@ -133,9 +134,8 @@ impl<'s> Declarations<'s> {
         }
         let Found::One(Meaning::Declared(Entry::Global(at))) = found else {
             let near = nearest(name.text, self.globals.iter().map(|it: &GlobalSlot<'s>| it.name.text));
-            let mut error =
-                Diagnostic::new(Code::E0101, name.span, format!("there is no global variable `{}`", name.text))
-                    .label("VAR_EXTERNAL names a variable of a VAR_GLOBAL");
+            let mut error = Diagnostic::missing(Missing::GlobalVariable, name.text, name.span)
+                .label("VAR_EXTERNAL names a variable of a VAR_GLOBAL");
             if let Some(near) = near {
                 error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
             }

@@ -26,7 +26,7 @@ impl<'s> Declarations<'s> {
             }
             None => self.located(None, block, decl, name, &resolved)??,
         };
-        Some(self.variable(name, block, Rc::new(resolved), place))
+        Some(self.variable(name, block, Some(decl), Rc::new(resolved), place))
     }
 
     /// Makes the globals' structure, so that places in bodies have their types.

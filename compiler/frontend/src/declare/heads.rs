@@ -1,6 +1,7 @@
 //! What a class owes to what it IMPLEMENTS and overrides: the same parameters and results, by their types.
 
 use crate::ast::{self, PouKind};
+use crate::diagnostic::Missing;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::spelling::{Key, nearest};
 use crate::start::INITIAL;
@@ -188,7 +189,7 @@ impl<'s> Declarations<'s> {
             Found::Nothing if self.names.root(name.text).is_none() && self.names.holders(name.text).is_empty() => {
                 let names = self.table.interfaces.slots.iter().map(|it| self.pous[*it].ast.name.text);
                 let near = nearest(name.text, names).map(str::to_owned);
-                let error = error(format!("there is no INTERFACE `{}`", name.text));
+                let error = Diagnostic::missing(Missing::Interface, name.text, name.span).label("expected one");
                 self.report(match near {
                     Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
                     None => error,

@@ -153,6 +153,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: Some(format!("The bits from `{address}` on, which several variables share.")),
             location: self.location(it.first.span),
+            declared: None,
         };
         let at = self.add_synthetic(field, None);
         Member { field: self.addresses.own_fields().len() + at, ..*it }

@@ -41,6 +41,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: None,
             location: self.location(function.span),
+            declared: None,
         };
         let at = self.add_synthetic(field, None);
         self.synthetic_place(at)

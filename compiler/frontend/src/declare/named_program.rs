@@ -126,7 +126,8 @@ impl<'s> Declarations<'s> {
         let run = self.run_of_program(slot);
         let Some(variable) = self.instance_of_program(slot, run) else { return };
         let bound = run.map(|it| (it, wrapped[it - self.written_pous().len()].bound.as_slice()));
-        let named = NamedProgram { variable: Rc::new(variable), first, is_called, runs, run: bound };
+        let named =
+            NamedProgram { variable: Rc::new(variable), first, is_called, runs, run: bound, is_reported: false };
         self.named_programs.insert(slot, named);
     }
 
@@ -157,10 +158,12 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: pou.doc.clone(),
             location: self.location(pou.name.span),
+            declared: None,
         };
         let at = self.add_synthetic(field, None);
         Some(Variable {
             name: pou.name,
+            declared: None,
             place: self.synthetic_place(at),
             resolved: Rc::new(resolved),
             section: Section::Global,

@@ -157,7 +157,7 @@ impl<'s> Declarations<'s> {
         let Some(place) = self.place_variable(pou, block, decl, name, resolved, builder) else {
             return builder.refuse(name);
         };
-        let mut variable = self.variable(name, block, Rc::clone(resolved), place);
+        let mut variable = self.variable(name, block, Some(decl), Rc::clone(resolved), place);
         if let Some(early) = builder.scope.constants.as_ref().and_then(|it| it.get(name.text)) {
             variable.used = Rc::clone(&early.used);
         }

@@ -131,6 +131,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: Some(doc.to_owned()),
             location,
+            declared: None,
         };
         let title = title.replace('.', "_");
         let fields =

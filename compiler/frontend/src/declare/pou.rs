@@ -130,6 +130,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: Some("Has no variables, but needs an address".to_owned()),
             location: self.location(pou.name.span),
+            declared: None,
         }
     }
 
@@ -195,7 +196,7 @@ impl<'s> Declarations<'s> {
                 let Some(resolved) = known.map(Rc::new) else { return true };
                 for name in &decl.names {
                     let place = Place::root(Root::Instance, resolved.ty);
-                    let variable = self.variable(*name, block, Rc::clone(&resolved), place);
+                    let variable = self.variable(*name, block, Some(decl), Rc::clone(&resolved), place);
                     let scope = Rc::get_mut(&mut scope).expect("no one else holds the scope between declarations");
                     let _ = scope.insert(variable);
                 }
@@ -315,7 +316,7 @@ impl<'s> Declarations<'s> {
                 builder.refuse(*name);
                 continue;
             };
-            let variable = self.variable(*name, block, resolved, place);
+            let variable = self.variable(*name, block, Some(decl), resolved, place);
             let scope = builder.own_scope();
             self.enter_variable(scope, variable);
         }
@@ -474,6 +475,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: Some(format!("Edge memory of `{}`", name.text)),
             location: self.location(name.span),
+            declared: None,
         });
         let trigger = Place::root(Root::Instance, Type::Block(block)).field(id, Type::Block(block));
         builder.edges.push(EdgeInput { input, trigger: trigger.clone() });

@@ -3,6 +3,7 @@
 use super::run::configurations;
 use crate::ast::{self, Bound, TypeKind};
 use crate::diagnostic::wording::list;
+use crate::diagnostic::{Missing, Subject};
 use crate::dialect::rules::InitialValues;
 use crate::dialect::{self, Dialect, missing};
 use crate::expr::unresolved::{block_of_another_dialect, no_such_block};
@@ -402,9 +403,9 @@ impl<'s> Declarations<'s> {
                 };
                 let place = around.first().map_or(span, |it| it.span);
                 let known = || self.library_not_there(&full, place);
-                self.not_there(&full, place).or_else(known).unwrap_or_else(|| {
-                    Diagnostic::new(Code::E0102, place, format!("there is no namespace `{full}`")).help(help)
-                })
+                self.not_there(&full, place)
+                    .or_else(known)
+                    .unwrap_or_else(|| Diagnostic::missing(Missing::Namespace, &full, place).help(help))
             }
         };
         self.report(error);
@@ -470,7 +471,11 @@ impl<'s> Declarations<'s> {
     fn report_unknown_type(&mut self, name: ast::Name<'s>) {
         let dialect = self.dialect(name.span);
         if let Some(library) = missing::library_of_type(dialect, name.text) {
-            return self.not_supported(name.span, &format!("`{}` of {library}", name.text));
+            return self.report(Diagnostic::unavailable(
+                name.text,
+                name.span,
+                &format!("`{}` of {library}", name.text),
+            ));
         }
         if let Some(dialect) = prelude::owner(name.text) {
             let system = dialect.name().to_ascii_uppercase();
@@ -495,8 +500,7 @@ impl<'s> Declarations<'s> {
         let foreign =
             FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());
         let near = foreign.or(near);
-        let mut error =
-            Diagnostic::new(Code::E0102, name.span, format!("there is no type `{}`", name.text)).label("unknown type");
+        let mut error = Diagnostic::missing(Missing::Type, name.text, name.span).label("unknown type");
         if name.text.eq_ignore_ascii_case("VOID") {
             error = error.help("a FUNCTION without a result has no `:` and no type after its name");
         } else if let Some((_, ours)) = OF_SIMATIC.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)) {
@@ -722,7 +726,7 @@ impl<'s> Declarations<'s> {
             let ty = Type::Elementary(base);
             let resolved = Rc::new(Resolved { ty, initial: scalar_initial(known.value) });
             let place = staunch_ir::Place::root(staunch_ir::Root::Instance, ty);
-            let variable = self.variable(value.name, &block, resolved, place);
+            let variable = self.variable(value.name, &block, None, resolved, place);
             // A duplicate is reported where the values are declared.
             let _ = scope.insert(Variable { constant: true, ..variable });
         }
@@ -762,6 +766,7 @@ impl<'s> Declarations<'s> {
             let Some(number) = base.repr().integer(next) else {
                 self.report(
                     Diagnostic::new(Code::E0202, value.name.span, format!("{next} does not fit {}", base.name()))
+                        .about(Subject::Beyond(base))
                         .label(format!("the enumeration's values are of type {}", base.name())),
                 );
                 return None;

@@ -5,29 +5,14 @@ use crate::dialect::Dialect;
 use crate::spelling::Key;
 use crate::start::{AFTER, GLOBALS, INIT, INITIAL, OF_INSTANCE, START, is_after};
 use crate::types::declarations::Declarations;
-use crate::types::starts::{OF_THE_SYSTEM, Starts};
+use crate::types::starts::OF_THE_SYSTEM;
 use crate::{Code, Diagnostic};
 use staunch_ir::Type;
 
 impl<'s> Declarations<'s> {
-    /// Finds the declarations that the start of instances has to know.
+    /// Whether instances have a start.
     pub(super) fn note_starts(&mut self) {
-        if !self.pous.iter().any(|it| it.ast.name.text == GLOBALS) {
-            return;
-        }
-        let mut declared: Vec<&'s VarDecl<'s>> = self.globals.iter().map(|it| it.decl).collect();
-        declared.extend(self.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars));
-        self.types.iter().for_each(|it| members(&it.decl.ty, &mut declared));
-        let mut starts = Starts { is_any: true, ..Starts::default() };
-        for decl in
-            declared.into_iter().filter(|it| it.construction.is_some() || it.initial.is_some() || it.started.is_some())
-        {
-            for name in &decl.names {
-                let at = self.location(name.span);
-                starts.declared.insert(at, decl);
-            }
-        }
-        self.starts = starts;
+        self.starts.is_any = self.pous.iter().any(|it| it.ast.name.text == GLOBALS);
     }
 
     /// Reports arguments for an instance that is declared, and started, elsewhere.

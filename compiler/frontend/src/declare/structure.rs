@@ -92,7 +92,7 @@ impl<'s> Declarations<'s> {
             };
             for member in &decl.names {
                 let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
-                let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
+                let variable = self.variable(*member, &block, Some(decl), Rc::clone(&resolved), place);
                 let field = self.field(*member, &resolved, &block, decl);
                 self.enter_variable(&mut seen, variable);
                 if is_bit { made.push_bit(field) } else { made.push(field) }
@@ -188,7 +188,7 @@ impl<'s> Declarations<'s> {
             align = self.align_of(resolved.ty).max(align);
             for member in &decl.names {
                 let place = staunch_ir::Place::root(staunch_ir::Root::Instance, resolved.ty);
-                let variable = self.variable(*member, &block, Rc::clone(&resolved), place);
+                let variable = self.variable(*member, &block, Some(decl), Rc::clone(&resolved), place);
                 let Field { name, ty, doc, location, .. } = self.field(*member, &resolved, &block, decl);
                 self.enter_variable(&mut seen, variable);
                 overlays.push(Overlay { name, ty, field: STORAGE, bit, is_bit, is_packed: false, doc, location });
@@ -438,6 +438,7 @@ pub(super) fn storage(name: &str, ty: Type, initial: Const, doc: Option<String>,
         address: None,
         doc,
         location,
+        declared: None,
     }
 }
 

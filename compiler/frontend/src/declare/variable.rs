@@ -4,7 +4,7 @@ use crate::ast;
 use crate::types::declarations::Declarations;
 use crate::types::scope::{Scope, Variable};
 use crate::types::table::Resolved;
-use staunch_ir::{Field, Place, Section};
+use staunch_ir::{DeclarationId, Field, Place, Section};
 use std::cell::Cell;
 use std::rc::Rc;
 
@@ -39,11 +39,13 @@ impl<'s> Declarations<'s> {
         &self,
         name: ast::Name<'s>,
         block: &ast::VarBlock<'s>,
+        declared: Option<&'s ast::VarDecl<'s>>,
         resolved: Rc<Resolved>,
         place: Place,
     ) -> Variable<'s> {
         Variable {
             name,
+            declared,
             place,
             section: section(block.kind),
             constant: block.constant.is_some(),
@@ -127,8 +129,10 @@ impl<'s> Declarations<'s> {
         name: ast::Name<'s>,
         resolved: &Resolved,
         block: &ast::VarBlock<'s>,
-        decl: &ast::VarDecl<'s>,
+        decl: &'s ast::VarDecl<'s>,
     ) -> Field {
+        let declared = DeclarationId::next(self.declared.len());
+        self.declared.push((name, decl));
         let address = decl.address.and_then(|it| crate::types::address::parse(it.text));
         Field {
             name: crate::types::address::field_name(name.text),
@@ -140,6 +144,7 @@ impl<'s> Declarations<'s> {
             address,
             doc: decl.doc.clone(),
             location: self.location(name.span),
+            declared: Some(declared),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::checker::{Checker, Context};
 use super::operand::Operand;
+use crate::diagnostic::Subject;
 use crate::types::coercion::{as_number, widens};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::narrow::stored;
@@ -381,6 +382,7 @@ impl<'s> Checker<'_, 's> {
     fn report_narrowing(&mut self, from: Elementary, to: Elementary, span: Span) {
         let function = format!("{}_TO_{}", from.name(), to.name());
         let mut error = Diagnostic::new(Code::E0203, span, format!("expected {}, found {}", to.name(), from.name()))
+            .about(Subject::Mismatch(to, from))
             .label(format!("{} is not converted to {} implicitly", from.name(), to.name()));
         error = match self.short_text(span) {
             Some(text) => error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})")),

@@ -113,6 +113,7 @@ impl<'s> Declarations<'s> {
             address: None,
             doc: None,
             location: at,
+            declared: None,
         });
         coverage.points.push(CoveragePoint { at, field, kind });
         coverage.known.insert(key, field);

@@ -4,6 +4,7 @@ use super::checker::{Checker, Context};
 use super::method::is_this;
 use super::operand::{Operand, computed};
 use super::place::{Access, Found};
+use crate::diagnostic::Missing;
 use crate::types::scope::Variable;
 use crate::types::window::Window;
 use crate::{Code, Diagnostic, Span, ast};
@@ -100,7 +101,7 @@ impl<'s> Checker<'_, 's> {
         if is_this(&own) && self.decl.dialect(name.span).binds_by_assignment() && !self.is_this_of_program(&own) {
             return self.reference_to(&own, RefKind::PointerTo);
         }
-        self.unknown_name(name);
+        self.unknown_name(name, Missing::Variable);
         None
     }
 

@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::operand::Operand;
 use super::real::Real;
+use crate::diagnostic::Missing;
 use crate::dialect::rules::Functions;
 use crate::lex::DECIMAL;
 use crate::names::functions::Converted;
@@ -231,8 +232,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         let near = crate::spelling::nearest(prefix.text, Elementary::ALL.iter().map(|it| it.name()));
-        let mut error = Diagnostic::new(Code::E0102, prefix.span, format!("there is no type `{}`", prefix.text))
-            .label("the type of a literal");
+        let mut error = Diagnostic::missing(Missing::Type, prefix.text, prefix.span).label("the type of a literal");
         if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(prefix.span, near);
         }
@@ -246,7 +246,7 @@ impl<'s> Checker<'_, 's> {
         let found = self.decl.lookup(path, Sense::Value);
         self.decl.note_path(path, &found);
         let Found::One(Meaning::Enumerator(slot)) = found else {
-            self.error(Code::E0102, ty.span, format!("there is no enumeration `{}`", ty.text));
+            self.report(Diagnostic::missing(Missing::Enumeration, ty.text, ty.span));
             return None;
         };
         self.enumerator_of(slot, ty, name)
@@ -296,10 +296,19 @@ impl<'s> Checker<'_, 's> {
             [slot] => {
                 let ty = self.decl.types[*slot].decl.name;
                 let space = self.decl.names.space_of(ty.span);
-                Some(match self.decl.names.is_of_library(space) {
-                    true => self.enumerator_of(*slot, ty, name),
-                    false => self.enumerator(&[ty, name]),
-                })
+                if self.decl.names.is_of_library(space) {
+                    return Some(self.enumerator_of(*slot, ty, name));
+                }
+                if let Found::One(Meaning::Enumerator(_)) = self.decl.lookup(&[ty, name], Sense::Value) {
+                    return Some(self.enumerator(&[ty, name]));
+                }
+                let meant = format!("{}#{}", self.decl.name_in_full(ty), name.text);
+                self.report(
+                    Diagnostic::missing(Missing::Variable, name.text, name.span)
+                        .label("unknown name")
+                        .help(format!("it is a value of an enumeration that is not visible here: write `{meant}`")),
+                );
+                Some(None)
             }
             several => {
                 let names: Vec<_> = several

@@ -68,13 +68,10 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn offer_fields(&self, id: StructId) {
-        let structure = self.decl.program.structure(id);
         let names: Vec<_> = self.decl.members_of(id).collect();
         for name in names {
-            let own = self.decl.field_named(id, name).map(|it| structure.fields[it.index()].location);
-            let shared = || structure.overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name));
-            if let Some(location) = own.or_else(|| Some(shared()?.location)) {
-                self.decl.log.offer_expected(name, Named::Definition(self.decl.log.name_at(location)));
+            if let Some(declared) = self.decl.declaration_named(id, name) {
+                self.decl.log.offer_expected(name, Named::Definition(declared));
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use super::checker::Checker;
 use super::real::Real;
+use crate::diagnostic::Subject;
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::narrow::is_narrow;
 pub(crate) use staunch_ir::narrow::stored;
@@ -153,6 +154,7 @@ impl<'s> Checker<'_, 's> {
         let (low, high) = ty.repr().range()?;
         self.report(
             Diagnostic::new(Code::E0202, span, format!("{value} does not fit {}", ty.name()))
+                .about(Subject::Beyond(ty))
                 .label(format!("{} holds {low} to {high}", ty.name())),
         );
         None

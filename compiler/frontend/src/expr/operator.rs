@@ -3,6 +3,7 @@
 use super::checker::{Checker, Context};
 use super::coverage::JOINED;
 use super::operand::{Operand, computed};
+use crate::diagnostic::Subject;
 use crate::dialect::Dialect;
 use crate::dialect::rules::{Functions, Literals};
 use crate::types::coercion::{Join, as_number, join, join_in};
@@ -227,6 +228,9 @@ impl<'s> Checker<'_, 's> {
                 None if a == b => error,
                 None => error.help("convert one side, so that both have one type"),
             };
+        }
+        if let (Some(Type::Elementary(a)), Some(Type::Elementary(b))) = (sides.a.ty(), sides.b.ty()) {
+            error = error.about(Subject::Mismatch(a, b));
         }
         self.report(error);
     }

@@ -6,6 +6,7 @@ use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::operand::Operand;
 use super::operator::{beside, literal_types, mixed_signs};
+use crate::diagnostic::Subject;
 use crate::dialect::Dialect;
 use crate::dialect::rules::{NarrowIntegers, Rules};
 use crate::types::coercion::{Join, as_number, join, join_in};
@@ -420,12 +421,15 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn report_apart(&mut self, a: Type, b: Type, span: Span, name: ast::Name<'s>) {
-        let (a, b) = (self.type_name(a), self.type_name(b));
-        self.report(
-            Diagnostic::new(Code::E0204, name.span, format!("`{}` does not take {a} and {b}", name.text))
-                .label("its arguments need one type")
-                .other(span, format!("this is {b}")),
-        );
+        let (first, second) = (self.type_name(a), self.type_name(b));
+        let message = format!("`{}` does not take {first} and {second}", name.text);
+        let error = Diagnostic::new(Code::E0204, name.span, message)
+            .label("its arguments need one type")
+            .other(span, format!("this is {second}"));
+        self.report(match (a, b) {
+            (Type::Elementary(a), Type::Elementary(b)) => error.about(Subject::Mismatch(a, b)),
+            _ => error,
+        });
     }
 
     fn join_types(&self, a: Type, b: Type, span: Span) -> Option<Type> {

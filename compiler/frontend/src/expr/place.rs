@@ -4,6 +4,7 @@ use super::character::has_characters;
 use super::checker::Checker;
 use super::part::Part;
 use super::unresolved::not_constant;
+use crate::diagnostic::Missing;
 use crate::index::recorder::Named;
 use crate::inherit::is_super;
 use crate::names::{self, Entry, Meaning, Sense};
@@ -66,14 +67,24 @@ impl<'s> Checker<'_, 's> {
 
     /// The place that `expr` names; a REFERENCE TO is itself.
     pub(crate) fn place_of_reference(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        self.place_sought(expr, Missing::Variable)
+    }
+
+    /// The place of what has a member.
+    pub(super) fn owner(&mut self, expr: &ast::Expr<'s>) -> Option<Found<'s>> {
+        let found = self.place_sought(expr, Missing::Owner)?;
+        self.referred(found, expr.span)
+    }
+
+    fn place_sought(&mut self, expr: &ast::Expr<'s>, sought: Missing) -> Option<Found<'s>> {
         if let Some(found) =
             self.this_of(expr).or_else(|| self.property_value(expr)).or_else(|| self.called_place(expr))
         {
             return found;
         }
         match &expr.kind {
-            Ast::Name(name) => self.variable_place(*name),
-            Ast::Paren(inner) => self.place_of_reference(inner),
+            Ast::Name(name) => self.variable_place(*name, sought),
+            Ast::Paren(inner) => self.place_sought(inner, sought),
             Ast::Address(name) => {
                 let address = self.decl.address(*name)?;
                 let Some(place) = self.decl.at_address(address) else {
@@ -289,6 +300,7 @@ impl<'s> Checker<'_, 's> {
         let local = &self.locals[id.index()];
         local.name.eq_ignore_ascii_case(name.text).then(|| Variable {
             name,
+            declared: None,
             place: Place::local(*id, resolved.ty),
             resolved: Rc::new(resolved.clone()),
             section: Section::Internal,
@@ -319,9 +331,9 @@ impl<'s> Checker<'_, 's> {
         })
     }
 
-    fn variable_place(&mut self, name: ast::Name<'s>) -> Option<Found<'s>> {
+    fn variable_place(&mut self, name: ast::Name<'s>, sought: Missing) -> Option<Found<'s>> {
         let Some(found) = self.find_variable(name) else {
-            self.unknown_name(name);
+            self.unknown_name(name, sought);
             return None;
         };
         let variable = found?;
@@ -360,7 +372,7 @@ impl<'s> Checker<'_, 's> {
                 (false, _) => self.member_of_this(name),
             };
         }
-        let found = self.place_or_view(base)?;
+        let found = self.owner(base)?;
         self.offer_members(name, self.type_of(&found));
         if self.is_unknown_head(self.type_of(&found), name) {
             return None;

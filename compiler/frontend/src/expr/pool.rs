@@ -5,6 +5,7 @@ use super::checker::Checker;
 use super::method::is_this;
 use super::operand::Operand;
 use super::place::{Access, Found};
+use crate::diagnostic::Missing;
 use crate::names::{Found as Meant, Sense};
 use crate::types::pools::Pool;
 use crate::types::table::Resolved;
@@ -230,7 +231,7 @@ impl<'s> Checker<'_, 's> {
         let error = self.decl.not_in_library(Code::E0102, around, *name);
         let error = error.or_else(|| self.decl.not_there(first.text, first.span)).unwrap_or_else(|| {
             let full = path.iter().map(|it| it.text).collect::<Vec<_>>().join(".");
-            Diagnostic::new(Code::E0102, named.span, format!("there is no type `{full}`")).label("unknown type")
+            Diagnostic::missing(Missing::Type, &full, named.span).label("unknown type")
         });
         self.report(error);
         true

@@ -2,6 +2,7 @@
 
 use super::callee::Callee;
 use super::checker::Checker;
+use crate::diagnostic::Holder;
 use crate::dialect::{library, missing};
 use crate::names::{Entry, Found, Meaning, Sense, SpaceId, functions};
 use crate::prelude;
@@ -174,21 +175,22 @@ impl<'s> crate::types::declarations::Declarations<'s> {
             return hidden;
         }
         if let Some(function) = missing::function_of_type(&full, name.text) {
-            return crate::log::unsupported(name.span, &format!("the function {function}"));
+            return Diagnostic::unavailable(function, name.span, &format!("the function {function}"));
         }
-        if let Some(help) = missing::namespace(&format!("{full}.{}", name.text)) {
-            return crate::log::unsupported(name.span, &format!("`{full}.{}`", name.text)).help(help);
+        let in_full = format!("{full}.{}", name.text);
+        if let Some(help) = missing::namespace(&in_full) {
+            return Diagnostic::unavailable(&in_full, name.span, &format!("`{in_full}`")).help(help);
         }
         let path: Vec<_> = around.iter().copied().chain([name]).collect();
         if let Some(space) = self.names.space_at(self.site(name.span), &path) {
-            return self.only_a_namespace(code, space, &format!("{full}.{}", name.text), name.span);
+            return self.only_a_namespace(code, space, &in_full, name.span);
         }
-        let what = match space {
-            Some(it) if self.names.is_list(it) => format!("the list `{full}` has no variable `{}`", name.text),
-            Some(it) if self.names.is_of_library(it) => format!("the library `{full}` has no `{}`", name.text),
-            Some(_) | None => format!("the namespace `{full}` has no `{}`", name.text),
+        let holder = match space {
+            Some(it) if self.names.is_list(it) => Holder::GlobalList,
+            Some(it) if self.names.is_of_library(it) => Holder::Library,
+            Some(_) | None => Holder::Namespace,
         };
-        let error = Diagnostic::new(code, name.span, what).label("unknown name");
+        let error = Diagnostic::missing_inside(code, (holder, &full), name.text, name.span).label("unknown name");
         if self.names.holders(name.text).iter().any(|(it, internal)| *internal && it.eq_ignore_ascii_case(&full)) {
             return error.help(format!("`{full}.{}` is INTERNAL, and not visible here", name.text));
         }
@@ -225,7 +227,7 @@ impl<'s> crate::types::declarations::Declarations<'s> {
         let unit = prelude::unit(text, site.dialect).filter(|it| it.is_value() == is_value);
         let built_in = if is_value { &[] } else { library::of_built_in(text) };
         let libraries = unit.map_or(built_in, |it| it.libraries);
-        let error = Diagnostic::new(code, place, format!("the library `{library}` has no `{text}`"));
+        let error = Diagnostic::missing_inside(code, (Holder::Library, library), text, place);
         if let Some(right) = libraries.first() {
             let meant = format!("{right}.{text}");
             return Some(

@@ -199,12 +199,10 @@ impl<'s> Checker<'_, 's> {
                 .help("declare it without RETAIN, or assign the address in the body"),
             );
         }
-        let at = self.at(variable.name.span);
-        let declared = self.decl.starts.declared.get(&at).copied();
         let (span, value) = (variable.name.span, variable.resolved.initial.clone());
         // Globals whose addresses overlap others have moved them; an instance shares no bits itself.
         let (place, _) = self.decl.image.stored(&variable.place);
-        self.start_declared(place, declared, value, span);
+        self.start_declared(place, variable.declared, value, span);
     }
 
     /// Starts what `__NEW` has made, with the arguments for its FB_init.
@@ -414,7 +412,7 @@ impl<'s> Checker<'_, 's> {
         let fields = self.decl.program.structure(id).fields.clone();
         for (at, field) in fields.into_iter().enumerate() {
             let member = place.clone().field(FieldId::next(at), field.ty);
-            let declared = self.decl.starts.declared.get(&field.location).copied();
+            let declared = self.decl.declaration_of(&field).map(|it| it.1);
             let initial = given.initial.and_then(|it| member_of(it, &field.name));
             if let (Some(address), None) = (declared.and_then(|it| it.started.as_ref()), initial) {
                 self.assign_address(member.clone(), address);

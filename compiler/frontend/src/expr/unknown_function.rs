@@ -3,6 +3,7 @@
 use super::checker::Checker;
 use super::unresolved::block_of_another_dialect;
 use super::{logix_operands, test_words};
+use crate::diagnostic::Missing;
 use crate::dialect::{Dialect, missing};
 use crate::names::{functions, is_instruction};
 use crate::prelude;
@@ -83,7 +84,8 @@ impl<'s> Checker<'_, 's> {
             let message = format!("the function `{}` of S7 is not supported", name.text);
             self.report(Diagnostic::new(Code::E0904, name.span, message).label(why).help(instead));
         } else if not_yet(name.text, self.decl.dialect(name.span)) {
-            self.decl.not_supported(name.span, &format!("the function {}", name.text.to_ascii_uppercase()));
+            let what = format!("the function {}", name.text.to_ascii_uppercase());
+            self.report(Diagnostic::unavailable(name.text, name.span, &what));
         } else if !self.is_of_unknown_base() {
             let error = self.no_such_function(name, arguments);
             self.report(error);
@@ -101,9 +103,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     fn no_such_function(&self, name: ast::Name<'s>, arguments: &[ast::Argument<'s>]) -> Diagnostic {
-        let error =
-            Diagnostic::new(Code::E0307, name.span, format!("there is no function or instance `{}`", name.text))
-                .label("unknown name");
+        let error = Diagnostic::missing(Missing::Callable, name.text, name.span).label("unknown name");
         let is_logix = self.decl.dialect(name.span).family() == Family::Logix;
         if let Some(meant) = logix_operands::of_ladder(name.text).filter(|_| is_logix) {
             error.note("it is an instruction of ladder").help(meant)

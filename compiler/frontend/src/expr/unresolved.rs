@@ -1,6 +1,7 @@
 //! Names that are not there, and what was probably meant.
 
 use super::checker::{Checker, Context};
+use crate::diagnostic::Missing;
 use crate::diagnostic::wording::{article, list, list_of_all};
 use crate::dialect::{Dialect, missing};
 use crate::names::functions;
@@ -194,7 +195,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Reports a name that means nothing here.
-    pub(crate) fn unknown_name(&mut self, name: ast::Name<'s>) {
+    pub(crate) fn unknown_name(&mut self, name: ast::Name<'s>, sought: Missing) {
         if self.decl.names.unread.contains(&Key(name.text)) {
             return;
         }
@@ -216,7 +217,7 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         if missing::is_variable(self.decl.dialect(name.span), name.text) {
-            return self.decl.not_supported(name.span, &format!("`{}`", name.text));
+            return self.report(Diagnostic::unavailable(name.text, name.span, &format!("`{}`", name.text)));
         }
         if let Some(error) = self.decl.not_there(name.text, name.span) {
             self.report(error);
@@ -227,14 +228,15 @@ impl<'s> Checker<'_, 's> {
             return;
         }
         let block = self.decl.bare_block(name).is_some();
-        let message = if block {
-            format!("`{}` is a FUNCTION_BLOCK, not an instance of one", name.text)
+        let known = |what: &str| Diagnostic::new(Code::E0101, name.span, format!("`{}` is {what}", name.text));
+        let mut error = if block {
+            known("a FUNCTION_BLOCK, not an instance of one")
         } else if functions::exists(name.text) {
-            format!("`{}` is a function, not a variable", name.text)
+            known("a function, not a variable")
         } else {
-            format!("`{}` is not declared", name.text)
-        };
-        let mut error = Diagnostic::new(Code::E0101, name.span, message).label("unknown name");
+            Diagnostic::missing(sought, name.text, name.span)
+        }
+        .label("unknown name");
         if block {
             self.report(
                 error

@@ -4,6 +4,7 @@ use crate::ast;
 use crate::declare::run::{
     Listing, declaration_of, has_in_outs, is_false, is_task, listing, property, unlisted, within,
 };
+use crate::diagnostic::Missing;
 use crate::dialect::Dialect;
 use crate::dialect::rules::ProgramOrder;
 use crate::expr::constant::constant;
@@ -429,7 +430,7 @@ impl<'s> Declarations<'s> {
 
     fn unknown_task(&mut self, name: ast::Name<'s>, tasks: &[(ast::Name<'s>, Timing)]) {
         let near = nearest(name.text, tasks.iter().map(|(it, _)| it.text));
-        let mut error = Diagnostic::new(Code::E0101, name.span, format!("there is no TASK `{}`", name.text));
+        let mut error = Diagnostic::missing(Missing::Task, name.text, name.span);
         if let Some(near) = near {
             error = error.help(format!("did you mean `{near}`?")).fix(name.span, near);
         }
@@ -463,11 +464,7 @@ impl<'s> Declarations<'s> {
                 // One in a namespace may have the very name.
                 let near = near.and_then(|near| names.iter().find(|it| it.text == near));
                 let near = near.map(|it| self.names.in_full(self.names.space_of(it.span), it.text));
-                let mut error = Diagnostic::new(
-                    Code::E0101,
-                    instance.program.span,
-                    format!("there is no PROGRAM `{}`", instance.program.text),
-                );
+                let mut error = Diagnostic::missing(Missing::Program, instance.program.text, instance.program.span);
                 if let Some(near) = near {
                     error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near.as_str());
                 } else if let [only] = names.as_slice() {
@@ -595,11 +592,11 @@ impl<'s> Declarations<'s> {
 
     /// Reports a PROGRAM that others name, and that a CONFIGURATION lists so that a run has an instance of its own.
     pub fn report_called_and_listed(&mut self, slot: usize, listed: Span) -> bool {
-        let Some(named) = self.named_programs.get(&slot) else { return false };
+        let Some(named) = self.named_programs.get_mut(&slot) else { return false };
         let (name, first) = (named.variable.name.text, named.first);
-        let message = format!("`{name}` is used by name, but also runs with its own instance");
         // Each of its runs says the same.
-        if self.log.diagnostics.iter().all(|it| it.message != message) {
+        if !std::mem::replace(&mut named.is_reported, true) {
+            let message = format!("`{name}` is used by name, but also runs with its own instance");
             self.report(
                 Diagnostic::new(Code::E0902, listed, message)
                     .label("this is one of several instances, or it has connections, a SINGLE or a VAR_CONFIG")

@@ -4,18 +4,15 @@
 use crate::ast::{PouKind, VarDecl};
 use crate::declare::starts::members;
 use crate::testing::suite::SUITE;
-use crate::types::declarations::Declarations;
+use crate::types::declarations::{Declarations, PouSlot};
 use crate::{Code, Diagnostic, Span};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 use staunch_ir::HELD_PROGRAM;
-use staunch_ir::{Chars, Const, FieldId, Location, Program, StructId, Type};
+use staunch_ir::{Chars, Const, Field, FieldId, Place, Projection, StructId, Type};
 
-/// The variables that start with the paths of their instances, by where they are declared, and what each variable of the
-/// program is called there.
-struct Marked<'s> {
-    program: &'s Program,
-    marks: FxHashSet<Location>,
-    names: FxHashMap<Location, String>,
+/// The structures of instances, and which of all hold variables that start with the paths of their instances.
+struct Marked<'a, 's> {
+    declarations: &'a Declarations<'s>,
     /// Structures that hold any, themselves or further inside.
     holders: FxHashSet<StructId>,
 }
@@ -23,17 +20,15 @@ struct Marked<'s> {
 impl<'s> Declarations<'s> {
     /// Puts the paths into the initial values of what is not inside of anything.
     pub(super) fn set_instance_paths(&mut self) {
-        let marks = self.instance_path_marks();
-        if marks.is_empty() {
+        if !self.has_instance_paths() {
             return;
         }
-        let names = self.declared_names();
         let roots = self.path_roots();
-        let marked = Marked::new(&self.program, marks, names);
+        let marked = Marked::new(self);
         let mut found = Vec::new();
         for (structure, field, path) in roots {
             let it = &self.program.structure(structure).fields[field.index()];
-            let value = if marked.is_path(it.location, it.ty) {
+            let value = if marked.is_path(structure, it) {
                 // Of the PROGRAM itself.
                 let around = path.rsplit_once('.').map_or(path.as_str(), |it| it.0);
                 Some(text(it.ty, around))
@@ -47,73 +42,69 @@ impl<'s> Declarations<'s> {
         }
     }
 
-    /// Where the variables with the attribute are declared. Reports what is none of an instance.
-    fn instance_path_marks(&mut self) -> FxHashSet<Location> {
-        let mut marks = FxHashSet::default();
-        let mut elsewhere: FxHashSet<Span> = FxHashSet::default();
+    /// Whether variables have the attribute. Reports what is none of an instance.
+    fn has_instance_paths(&mut self) -> bool {
         let mut declared: Vec<&'s VarDecl<'s>> =
             self.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars).collect();
         declared.extend(self.globals.iter().map(|it| it.decl));
         self.types.iter().for_each(|it| members(&it.decl.ty, &mut declared));
         declared.retain(|it| it.instance_path.is_some());
-        let structs = self.program.structs.iter().enumerate();
-        let of_instances = structs.filter(|(at, _)| self.slot_of_instance(StructId::next(*at)).is_some());
-        let is_text = |ty: Type| matches!(ty, Type::String(it) if !it.wide);
-        let fields = of_instances.flat_map(|(_, it)| &it.fields).filter(|it| is_text(it.ty)).map(|it| it.location);
-        let texts: FxHashSet<_> = if declared.is_empty() { FxHashSet::default() } else { fields.collect() };
-        for decl in declared {
-            for name in &decl.names {
-                let at = self.location(name.span);
-                match texts.contains(&at) {
-                    true => drop(marks.insert(at)),
-                    false => elsewhere.extend(decl.instance_path),
-                }
-            }
+        if declared.is_empty() {
+            return false;
         }
+        let structs = self.program.structs.iter().enumerate().map(|(at, it)| (StructId::next(at), it));
+        let fields = structs.flat_map(|(id, it)| it.fields.iter().map(move |field| (id, field)));
+        let paths = fields.filter(|(id, field)| self.is_instance_path(*id, field));
+        let place = |it: Span| (it.file, it.start);
+        let mut effective: Vec<_> =
+            paths.filter_map(|(_, field)| self.declaration_of(field)).map(|(name, _)| place(name.span)).collect();
+        effective.sort_unstable();
+        let has_effect = |it: &&VarDecl<'_>| it.names.iter().all(|it| effective.binary_search(&place(it.span)).is_ok());
+        let mut elsewhere: Vec<_> =
+            declared.iter().filter(|it| !has_effect(it)).filter_map(|it| it.instance_path).collect();
+        elsewhere.sort_unstable_by_key(|it| place(*it));
+        elsewhere.dedup();
         for span in elsewhere {
             self.report(
                 Diagnostic::new(Code::W0102, span, "the attribute 'instance-path' has no effect here")
                     .label("expected before a STRING in the VAR of a FUNCTION_BLOCK or PROGRAM"),
             );
         }
-        marks
+        !effective.is_empty()
     }
 
-    fn declared_names(&mut self) -> FxHashMap<Location, String> {
-        let of_pous = self.pous.iter().flat_map(|it| &it.ast.blocks).flat_map(|it| &it.vars);
-        let names: Vec<_> = of_pous.flat_map(|it| &it.names).copied().collect();
-        names.into_iter().map(|it| (self.location(it.span), it.text.to_owned())).collect()
+    /// Whether a field is a STRING of an instance that starts with the instance's path.
+    fn is_instance_path(&self, structure: StructId, field: &Field) -> bool {
+        let is_text = matches!(field.ty, Type::String(it) if !it.wide);
+        is_text
+            && self.slot_of_instance(structure).is_some()
+            && self.declaration_of(field).is_some_and(|(_, it)| it.instance_path.is_some())
     }
 
     /// All variables that are not inside of others, with their paths.
     fn path_roots(&mut self) -> Vec<(StructId, FieldId, String)> {
+        let globals = self.program.globals;
         let mut roots = Vec::new();
-        let mut of_globals: FxHashMap<Location, String> = FxHashMap::default();
-        let globals: Vec<_> = self.globals.iter().map(|it| (it.name, it.space)).collect();
-        for (name, space) in globals {
-            let path = self.names.in_full(space, name.text);
-            of_globals.insert(self.location(name.span), path);
+        for (at, global) in self.globals.iter().enumerate() {
+            let field = self.addresses.field_of_global(at).map(FieldId::next);
+            roots.extend(field.map(|it| (globals, it, self.names.in_full(global.space, global.name.text))));
         }
-        for slot in 0..self.pous.len() {
-            let (pou, owner) = (self.pous[slot].ast, self.pous[slot].owner);
-            if pou.kind == PouKind::Program {
-                of_globals.insert(self.location(pou.name.span), self.name_in_full(pou.name));
-            }
-            // VAR_STAT, which is declared once.
+        let named = self.named_programs.iter().map(|(slot, it)| (self.pous[*slot].ast.name, &it.variable.place));
+        let named = named.filter_map(|(name, place)| Some((globals, global_field(place)?, self.name_in_full(name))));
+        roots.extend(named);
+        // VAR_STAT is declared once, also where heirs have it.
+        let mut known = vec![false; self.synthetic.fields.len()];
+        for PouSlot { ast: pou, owner, .. } in &self.pous {
             let around = owner.map_or(String::new(), |it| format!("{}.", self.pous[it].ast.name.text));
             for name in pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names) {
-                if self.synthetic.statics.contains_key(&name.span) {
-                    let at = self.location(name.span);
-                    of_globals.entry(at).or_insert_with(|| format!("{around}{}.{}", pou.name.text, name.text));
+                let Some(at) = self.synthetic.statics.get(&name.span).copied() else { continue };
+                if !std::mem::replace(&mut known[at], true) {
+                    let path = format!("{around}{}.{}", pou.name.text, name.text);
+                    roots.extend(global_field(&self.synthetic_place(at)).map(|it| (globals, it, path)));
                 }
             }
         }
         let program = &self.program;
-        for (at, field) in program.structure(program.globals).fields.iter().enumerate() {
-            if let Some(path) = of_globals.get(&field.location) {
-                roots.push((program.globals, FieldId::next(at), path.clone()));
-            }
-        }
         for instance in &program.instances {
             let state = program.class(instance.program).state;
             let slot = self.slot_of_instance(state);
@@ -132,27 +123,28 @@ impl<'s> Declarations<'s> {
     }
 }
 
-impl<'s> Marked<'s> {
-    fn new(program: &'s Program, marks: FxHashSet<Location>, names: FxHashMap<Location, String>) -> Self {
-        let mut marked = Self { program, marks, names, holders: FxHashSet::default() };
+impl<'a, 's> Marked<'a, 's> {
+    fn new(declarations: &'a Declarations<'s>) -> Self {
+        let mut marked = Self { declarations, holders: FxHashSet::default() };
         // A structure is after those it contains.
-        for (at, structure) in program.structs.iter().enumerate() {
-            let holds = |it: &staunch_ir::Field| marked.is_path(it.location, it.ty) || marked.holds(it.ty);
+        for (at, structure) in declarations.program.structs.iter().enumerate() {
+            let id = StructId::next(at);
+            let holds = |it: &Field| marked.is_path(id, it) || marked.holds(it.ty);
             if structure.fields.iter().any(holds) {
-                marked.holders.insert(StructId::next(at));
+                marked.holders.insert(id);
             }
         }
         marked
     }
 
-    fn is_path(&self, at: Location, ty: Type) -> bool {
-        matches!(ty, Type::String(_)) && self.marks.contains(&at)
+    fn is_path(&self, structure: StructId, field: &Field) -> bool {
+        self.declarations.is_instance_path(structure, field)
     }
 
     fn holds(&self, ty: Type) -> bool {
         match ty {
             Type::Struct(id) => self.holders.contains(&id),
-            Type::Array(id) => self.holds(self.program.array(id).element),
+            Type::Array(id) => self.holds(self.declarations.program.array(id).element),
             Type::Elementary(_)
             | Type::Subrange(..)
             | Type::String(_)
@@ -179,13 +171,13 @@ impl<'s> Marked<'s> {
     }
 
     fn members(&self, id: StructId, value: &Const, path: &str) -> Const {
-        let fields = self.program.structure(id).fields.iter().enumerate();
-        let member = |(at, field): (usize, &staunch_ir::Field)| {
+        let fields = self.declarations.program.structure(id).fields.iter().enumerate();
+        let member = |(at, field): (usize, &Field)| {
             let value = value.part(at);
-            if self.is_path(field.location, field.ty) {
+            if self.is_path(id, field) {
                 return text(field.ty, path);
             }
-            let name = self.names.get(&field.location).map_or(field.name.as_str(), String::as_str);
+            let name = self.declarations.declaration_of(field).map_or(field.name.as_str(), |(name, _)| name.text);
             self.within(field.ty, &value, &format!("{path}.{name}")).unwrap_or(value)
         };
         Const::Struct(fields.map(member).collect())
@@ -197,7 +189,7 @@ impl<'s> Marked<'s> {
             let path = format!("{path}[{}]", indices.join(","));
             return self.within(ty, value, &path).unwrap_or_else(|| value.clone());
         };
-        let array = self.program.array(id);
+        let array = self.declarations.program.array(id);
         let one = |(at, index): (usize, i64)| {
             indices.push(index.to_string());
             let value = self.elements(array.element, &value.part(at), path, indices);
@@ -205,6 +197,14 @@ impl<'s> Marked<'s> {
             (1, value)
         };
         Const::Array((array.low..=array.high).enumerate().map(one).collect())
+    }
+}
+
+/// The field of the globals that a place is.
+fn global_field(place: &Place) -> Option<FieldId> {
+    match place.projections.as_slice() {
+        [Projection::Field(field)] => Some(*field),
+        _ => None,
     }
 }
 

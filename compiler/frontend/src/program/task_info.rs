@@ -1,7 +1,6 @@
 //! What is known of the tasks before any of them runs: the initial values of TwinCAT's `_TaskInfo` and `_AppInfo`.
 
 use super::configuration::{LOWEST_PRIORITY, Timing};
-use crate::Span;
 use crate::tasks::{self, OF_PROGRAM, OF_TASKS};
 use crate::types::declarations::Declarations;
 use staunch_ir::{Chars, Const, Type, Value};
@@ -17,12 +16,12 @@ impl Declarations<'_> {
             return;
         };
         let declared =
-            |name: &str| self.globals.iter().map(|it| it.name).find(|it| it.text == name && it.span.file == home);
-        let [Some(of_tasks), Some(of_program)] = [OF_TASKS, OF_PROGRAM].map(|it| declared(it).map(|it| it.span)) else {
+            |name: &str| self.globals.iter().position(|it| it.name.text == name && it.name.span.file == home);
+        let [Some(of_tasks), Some(of_program)] = [OF_TASKS, OF_PROGRAM].map(declared) else {
             return;
         };
         let mut count = 0;
-        if let Some((field, Type::Array(id))) = self.global_at(of_tasks) {
+        if let Some((field, Type::Array(id))) = self.field_of_global(of_tasks) {
             let array = self.program.array(id);
             let unknown = ("", Timing { interval: None, priority: LOWEST_PRIORITY });
             let tasks = tasks.iter().chain(std::iter::repeat(&unknown));
@@ -31,18 +30,17 @@ impl Declarations<'_> {
             count = values.len();
             self.start_as(field, Const::Array(values));
         }
-        if let Some((field, ty)) = self.global_at(of_program) {
+        if let Some((field, ty)) = self.field_of_global(of_program) {
             let project = self.log.sources.project().unwrap_or_default();
             let value = self.members(ty, |name| of_program_member(name, count, project));
             self.start_as(field, value);
         }
     }
 
-    /// The field of the globals that is declared there, and its type.
-    fn global_at(&mut self, span: Span) -> Option<(usize, Type)> {
-        let at = self.location(span);
-        let fields = &self.program.structure(self.program.globals).fields;
-        fields.iter().position(|it| it.location == at).map(|it| (it, fields[it].ty))
+    /// The field of a global variable, and its type.
+    fn field_of_global(&self, at: usize) -> Option<(usize, Type)> {
+        let field = self.addresses.field_of_global(at)?;
+        Some((field, self.program.structure(self.program.globals).fields[field].ty))
     }
 
     fn start_as(&mut self, field: usize, value: Const) {

@@ -13,6 +13,7 @@ use super::starts::Starts;
 use super::synthetic::{NamedProgram, Synthetic};
 use super::table::{Resolved, Table};
 use super::tests::Tests;
+use crate::diagnostic::Missing;
 use crate::dialect::rules::is_followed;
 use crate::dialect::{self, Dialect, missing};
 use crate::log::Log;
@@ -191,8 +192,10 @@ pub(crate) struct Declarations<'s> {
     /// called of that.
     pub dispatches: FxHashMap<(Type, Type, usize), usize>,
     pub overloads: Overloads,
+    /// The variables and members that became fields: a field has its number here.
+    pub declared: Vec<(ast::Name<'s>, &'s ast::VarDecl<'s>)>,
     /// What declarations say of the start of instances.
-    pub starts: Starts<'s>,
+    pub starts: Starts,
     /// The pools that `__NEW` takes objects from, by their types; `None` for one that was refused.
     pub pools: FxHashMap<Type, Option<Pool>>,
     /// The types of which `__NEW` asks for arrays, and no pool has any: that was reported.
@@ -229,6 +232,7 @@ impl<'s> Declarations<'s> {
             generics: Generics::default(),
             dispatches: FxHashMap::default(),
             overloads: Overloads::default(),
+            declared: Vec::new(),
             starts: Starts::default(),
             pools: FxHashMap::default(),
             pools_missing: FxHashSet::default(),
@@ -367,7 +371,7 @@ impl<'s> Declarations<'s> {
     /// A namespace by which the project refers to a library that is not there.
     pub fn not_there(&self, namespace: &str, place: Span) -> Option<Diagnostic> {
         let help = self.missing_library(namespace)?;
-        let error = Diagnostic::new(Code::E0102, place, format!("there is no namespace `{namespace}`"));
+        let error = Diagnostic::missing(Missing::Namespace, namespace, place);
         Some(error.label("the project refers to a library by this name").help(help))
     }
 
@@ -376,7 +380,7 @@ impl<'s> Declarations<'s> {
         if !missing::is_library(self.dialect(place), namespace) {
             return None;
         }
-        let error = Diagnostic::new(Code::E0102, place, format!("the library `{namespace}` is not available"));
+        let error = Diagnostic::missing(Missing::Library, namespace, place);
         let path = format!("`libraries = [\"…/{namespace}\"]`");
         let help = format!("add its sources to staunch.toml, as a folder or project named `{namespace}`: {path}");
         Some(error.label("it is not bundled with Staunch").help(help))
@@ -411,6 +415,11 @@ impl<'s> Declarations<'s> {
         if !is_followed(dialect, Part::EvaluationOrder) {
             self.touched.insert(RoutineId::next(slot), Own::of(&routine.body));
         }
+    }
+
+    /// The declaration of a field, and the name in it.
+    pub fn declaration_of(&self, field: &staunch_ir::Field) -> Option<(ast::Name<'s>, &'s ast::VarDecl<'s>)> {
+        field.declared.map(|it| self.declared[it.index()])
     }
 
     /// The class whose declaration has a name.

@@ -2,6 +2,7 @@
 //! in a call; for each set of types that calls give them there is one instance, which is checked and becomes a
 //! routine like any other FUNCTION.
 
+use crate::diagnostic::Sentence;
 use crate::{Code, Span, ast};
 use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::Type;
@@ -31,7 +32,7 @@ pub(crate) struct Generics {
     /// What the words mean in the signature that is being made.
     pub words: Vec<(Class, Type)>,
     /// What was reported of one instance of a FUNCTION.
-    pub reported: FxHashSet<(Code, Span, String)>,
+    pub reported: FxHashSet<(Code, Span, Sentence)>,
 }
 
 /// The class that a word names.

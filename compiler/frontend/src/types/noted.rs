@@ -1,6 +1,7 @@
 //! What names are noted to mean, for an editor.
 
 use super::declarations::Declarations;
+use crate::Span;
 use crate::ast::Name;
 use crate::index::recorder::Named;
 use crate::names::{Found, Meaning, Sense};
@@ -64,12 +65,20 @@ impl<'s> Declarations<'s> {
         if self.log.index.is_none() {
             return;
         }
-        let structure = self.program.structure(id);
-        let own = self.field_named(id, name.text).map(|it| structure.fields[it.index()].location);
-        let shared = || structure.overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name.text));
-        if let Some(location) = own.or_else(|| Some(shared()?.location)) {
-            self.log.note_declared(name.span, self.log.name_at(location));
+        if let Some(declared) = self.declaration_named(id, name.text) {
+            self.log.note_declared(name.span, declared);
         }
+    }
+
+    /// Where a member of a structure, or a variable of an instance, is declared.
+    pub fn declaration_named(&self, id: StructId, name: &str) -> Option<Span> {
+        let structure = self.program.structure(id);
+        if let Some(field) = self.field_named(id, name).map(|it| &structure.fields[it.index()]) {
+            let declared = self.declaration_of(field).map(|(name, _)| name.span);
+            return Some(declared.unwrap_or_else(|| self.log.name_at(field.location)));
+        }
+        let shared = structure.overlays.iter().find(|it| it.name.eq_ignore_ascii_case(name))?;
+        Some(self.log.name_at(shared.location))
     }
 
     pub fn note_pin(&self, name: Name<'s>, block: BlockId) {

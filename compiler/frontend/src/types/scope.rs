@@ -13,6 +13,8 @@ use std::rc::Rc;
 #[derive(Clone, Debug)]
 pub(crate) struct Variable<'s> {
     pub name: ast::Name<'s>,
+    /// Its declaration, if it has one of its own.
+    pub declared: Option<&'s ast::VarDecl<'s>>,
     pub place: Place,
     pub resolved: Rc<Resolved>,
     pub section: Section,

@@ -75,7 +75,7 @@ impl Declarations<'_> {
     /// Whether members of a structure have addresses as their initial values.
     fn has_addresses(&self, id: StructId) -> bool {
         let fields = self.program.structure(id).fields.iter();
-        fields.filter_map(|it| self.starts.declared.get(&it.location)).any(|it| it.started.is_some())
+        fields.filter_map(|it| self.declaration_of(it)).any(|(_, it)| it.started.is_some())
     }
 
     /// Whether a variable of the type has such members, but for those of instances.

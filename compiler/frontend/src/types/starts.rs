@@ -1,18 +1,15 @@
 //! What the start of instances goes by.
 
-use crate::ast;
 use rustc_hash::FxHashMap;
-use staunch_ir::{Location, StructId};
+use staunch_ir::StructId;
 
 /// The inputs that every FB_init has.
 pub(crate) const OF_THE_SYSTEM: [&str; 2] = ["bInitRetains", "bInCopyCode"];
 
 #[derive(Debug, Default)]
-pub(crate) struct Starts<'s> {
+pub(crate) struct Starts {
     /// Whether anything has a start: some FB_init, or a METHOD with `call_after_init`.
     pub is_any: bool,
-    /// The declarations with values, or arguments, for the variables in these places.
-    pub declared: FxHashMap<Location, &'s ast::VarDecl<'s>>,
     /// Whether starting a structure does anything, for those that were asked about.
     pub known: FxHashMap<StructId, bool>,
 }

@@ -51,4 +51,6 @@ pub(crate) struct NamedProgram<'s> {
     pub runs: bool,
     /// The run that holds it where a VAR_CONFIG binds something in it: the run's slot, and what is bound.
     pub run: Option<(usize, &'s [Binding<'s>])>,
+    /// That runs have instances of their own has been reported.
+    pub is_reported: bool,
 }

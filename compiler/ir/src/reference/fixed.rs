@@ -61,6 +61,7 @@ fn field_of(routine: &Routine, local: &Local) -> Field {
         address: None,
         doc: None,
         location: routine.location,
+        declared: None,
     }
 }
 

@@ -20,7 +20,7 @@ pub fn shown(analysis: &Analysis, it: &staunch_frontend::Diagnostic) -> Diagnost
         Some(DiagnosticRelatedInformation { location, message: it.text.clone() })
     });
     let others: Vec<_> = others.collect();
-    let lines = [Some(it.message.clone()), it.label.clone()].into_iter().flatten();
+    let lines = [Some(it.message.to_string()), it.label.clone()].into_iter().flatten();
     let notes = it.notes.iter().map(|it| format!("note: {it}")).chain(it.help.as_ref().map(|it| format!("help: {it}")));
     let text: Vec<_> = lines.chain(notes).collect();
     // An editor fades what could be deleted.

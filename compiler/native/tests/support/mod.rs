@@ -29,6 +29,7 @@ pub fn field(name: &str, ty: Type, initial: Const) -> Field {
         address: None,
         doc: None,
         location: AT,
+        declared: None,
     }
 }
 

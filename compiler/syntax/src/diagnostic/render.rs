@@ -255,7 +255,7 @@ fn json(diagnostic: &Diagnostic, sources: &Sources) -> String {
     let mut out = String::from("{\"reason\":\"diagnostic\"");
     field(&mut out, "code", diagnostic.code.name());
     field(&mut out, "severity", severity_name(diagnostic.severity));
-    field(&mut out, "message", &diagnostic.message);
+    field(&mut out, "message", diagnostic.message.as_str());
     out.push_str(",\"spans\":[");
     json_span(&mut out, sources, diagnostic.span, true, diagnostic.label.as_deref());
     for other in &diagnostic.others {

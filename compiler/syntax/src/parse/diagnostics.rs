@@ -212,7 +212,11 @@ pub fn shown(input: &mut In<'_, '_, '_>, kind: Kind, span: Span) -> String {
             | Kind::Address
             | Kind::Part
     );
-    if own && text.len() <= 40 { format!("`{text}`") } else { kind.to_string() }
+    match kind {
+        Kind::End if input.state().is_expression => "the end of the expression".to_owned(),
+        _ if own && text.len() <= 40 => format!("`{text}`"),
+        _ => kind.to_string(),
+    }
 }
 
 /// The empty place after the token before the one at `at`.
@@ -296,7 +300,7 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     } else {
         format!("write `{close}` where the {opener} ends")
     };
-    let mut it = Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
+    let mut it = Diagnostic::unclosed(end.to_string(), here, &found)
         .label(format!("expected {end} before this"))
         .other(opened, format!("this {opener} is not closed"));
     let inner = input.state().misaligned.filter(|it| it.start > opened.start);
@@ -319,7 +323,7 @@ pub fn wrong_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     let found = input.kind();
     let opener = input.text(opened).to_ascii_uppercase();
     input.report(
-        Diagnostic::new(Code::E0014, here, format!("expected {end}, found {found}"))
+        Diagnostic::unclosed(end.to_string(), here, &found.to_string())
             .label(format!("expected {end}"))
             .other(opened, format!("this {opener} is closed by {end}"))
             .help(format!("write {end}"))

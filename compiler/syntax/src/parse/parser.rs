@@ -101,6 +101,8 @@ pub struct State<'t, 's> {
     pub file: u16,
     pub text: &'s str,
     pub tokens: &'t Tokens<'s>,
+    /// The text is one expression, and not a file.
+    pub is_expression: bool,
     pub diagnostics: Vec<Diagnostic>,
     /// Blocks around the current place: what ends them, and what opened them.
     pub open: Vec<(Kind, Span)>,
@@ -156,6 +158,7 @@ impl<'t, 's> State<'t, 's> {
             file,
             text,
             tokens,
+            is_expression: false,
             diagnostics: Vec::new(),
             open: Vec::new(),
             depth: 0,

@@ -2,7 +2,7 @@
 
 use crate::session::Session;
 use staunch_compare::difference::pitfall::Pitfall;
-use staunch_frontend::{Code, Diagnostic, Dialect, Severity};
+use staunch_frontend::{Code, Diagnostic, Dialect, Severity, Subject};
 use staunch_ir::Elementary;
 use staunch_runtime::{BlockInfo, KeptCount, PinRole};
 
@@ -100,18 +100,12 @@ fn from_logix(target: Dialect) -> String {
 
 /// Whether the error is about whole numbers that do not fit one another's types, and of no other type.
 fn widths(error: &Diagnostic) -> bool {
-    let sides = match error.code {
-        Code::E0202 => 1,
-        Code::E0201 | Code::E0203 | Code::E0204 => 2,
-        _ => return false,
-    };
-    let words = error.message.split(|it: char| !it.is_ascii_alphanumeric() && it != '_');
-    let types: Vec<Elementary> = words.filter_map(elementary).collect();
-    types.len() >= sides && types.iter().all(|it| it.repr().is_integer() && it.is_integral())
-}
-
-fn elementary(name: &str) -> Option<Elementary> {
-    Elementary::ALL.iter().copied().find(|it| it.name() == name)
+    let is_whole = |it: Elementary| it.repr().is_integer() && it.is_integral();
+    match error.subject {
+        Some(Subject::Beyond(ty)) => is_whole(ty),
+        Some(Subject::Mismatch(a, b)) => is_whole(a) && is_whole(b),
+        Some(Subject::Missing { .. } | Subject::Unavailable { .. } | Subject::Unclosed { .. }) | None => false,
+    }
 }
 
 #[cfg(test)]
@@ -119,17 +113,16 @@ mod tests {
     use super::*;
     use staunch_frontend::Span;
 
-    fn is_widths(code: Code, message: &str) -> bool {
-        widths(&Diagnostic::new(code, Span::default(), message))
+    fn is_widths(code: Code, subject: Subject) -> bool {
+        widths(&Diagnostic::new(code, Span::default(), "").about(subject))
     }
 
     #[test]
     fn widths_are_those_of_whole_numbers() {
-        assert!(is_widths(Code::E0203, "expected INT, found WORD"));
-        assert!(is_widths(Code::E0202, "40000 does not fit INT"));
-        assert!(!is_widths(Code::E0201, "CASE needs an integer or an enumeration, but this is STRING[80]"));
-        assert!(!is_widths(Code::E0203, "expected INT, found REAL"));
-        assert!(!is_widths(Code::E0203, "expected INT, found STRING[80]"));
-        assert!(!is_widths(Code::E0208, "the index 0 is out of range"));
+        assert!(is_widths(Code::E0203, Subject::Mismatch(Elementary::Int, Elementary::Word)));
+        assert!(is_widths(Code::E0202, Subject::Beyond(Elementary::Int)));
+        assert!(!is_widths(Code::E0203, Subject::Mismatch(Elementary::Int, Elementary::Real)));
+        assert!(!is_widths(Code::E0203, Subject::Mismatch(Elementary::Time, Elementary::Int)));
+        assert!(!widths(&Diagnostic::new(Code::E0201, Span::default(), "CASE needs an integer, found STRING[80]")));
     }
 }
