@@ -23,3 +23,10 @@ pub struct Unit {
     pub levels: Levels,
     pub layout: Style,
 }
+
+impl Unit {
+    /// The source that a file is.
+    pub fn file(&self, path: &Path) -> Option<u16> {
+        self.paths.iter().zip(0u16..).find(|it| it.0 == path).map(|it| it.1)
+    }
+}

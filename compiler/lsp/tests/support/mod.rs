@@ -1,6 +1,8 @@
 //! An editor in a test: it opens documents, types, and asks.
 #![allow(dead_code, reason = "each test takes a part of it")]
 
+pub mod programs;
+
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value as Json, json};
 use staunch_frontend::{Dialect, Options, Source, Sources, format::Style};
