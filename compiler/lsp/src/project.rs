@@ -28,6 +28,10 @@ pub struct Project {
     near: Option<(Place, Arc<Analysis>)>,
     /// The check that runs.
     check: Option<(CheckId, Stop)>,
+    /// Whether other dialects are to be asked where there are errors, since it was opened or saved.
+    asks_dialects: bool,
+    /// Those that accept it as it was then.
+    pub dialects: Vec<Dialect>,
 }
 
 /// Each check has another number.
@@ -46,7 +50,16 @@ pub struct Analysis {
 impl Project {
     pub fn new(unit: Unit) -> Self {
         let heads = (0u16..).take(unit.paths.len()).map(|it| Some(without_bodies(&unit.sources, it))).collect();
-        Self { unit: Arc::new(unit), sources: None, heads, whole: None, near: None, check: None }
+        Self {
+            unit: Arc::new(unit),
+            sources: None,
+            heads,
+            whole: None,
+            near: None,
+            check: None,
+            asks_dialects: true,
+            dialects: Vec::new(),
+        }
     }
 
     pub fn has(&self, path: &Path) -> bool {
@@ -112,6 +125,23 @@ impl Project {
     /// Takes what the check has found out that runs.
     pub fn checked(&mut self, analysis: Arc<Analysis>) {
         (self.whole, self.check) = (Some(analysis), None);
+    }
+
+    /// It was saved: other dialects may accept it now.
+    pub fn saved(&mut self) {
+        self.asks_dialects = true;
+    }
+
+    /// What asks other dialects about a program with errors, once, for a thread of its own.
+    pub fn ask_dialects(&mut self) -> Option<impl FnOnce() -> Vec<Dialect> + use<>> {
+        let whole = Arc::clone(self.whole.as_ref()?);
+        if !std::mem::take(&mut self.asks_dialects) {
+            return None;
+        }
+        self.dialects.clear();
+        let accepting = self.unit.choice.as_ref()?.accepting;
+        let sources = self.sources.clone()?;
+        Some(move || accepting(&sources, &whole.unit.options, &whole.index.diagnostics))
     }
 
     /// All that there is to know, which is found out now where it is not known.

@@ -3,7 +3,7 @@
 mod capabilities;
 mod requests;
 
-use crate::answers::problems;
+use crate::answers::{dialects, problems};
 use crate::host::Host;
 use crate::project::{Analysis, CheckId, Documents, Project};
 use crate::{place, uri};
@@ -15,7 +15,7 @@ use gen_lsp_types::{
 };
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use serde_json::Value as Json;
-use staunch_frontend::Source;
+use staunch_frontend::{Dialect, Source};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -55,6 +55,7 @@ impl From<String> for Refused {
 /// When the editor does not keep to the protocol, or is gone.
 pub fn serve(connection: &Connection, host: &dyn Host) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|it| it.to_string())?;
+    let can_create = can_create_files(&params);
     let _: InitializeParams = serde_json::from_value(params).map_err(|it| format!("initialize: {it}"))?;
     let result = capabilities::initialized();
     connection.initialize_finish(id, result).map_err(|it| it.to_string())?;
@@ -65,9 +66,16 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<(), String> {
         documents: Documents::default(),
         open: Vec::new(),
         checks: 0,
+        can_create,
         checked: crossbeam_channel::unbounded(),
     };
     server.run()
+}
+
+/// Whether an editor makes files, as it says at the start.
+fn can_create_files(params: &Json) -> bool {
+    let edits = &params["capabilities"]["workspace"]["workspaceEdit"];
+    edits["resourceOperations"].as_array().is_some_and(|it| it.iter().any(|it| it == "create"))
 }
 
 /// A document that is open.
@@ -86,17 +94,26 @@ pub(crate) struct Server<'a> {
     projects: Vec<Project>,
     documents: Documents,
     open: Vec<Open>,
+    /// The editor makes files where an edit asks for that.
+    can_create: bool,
     /// How many checks have begun.
     checks: u64,
     /// What they have found out.
-    checked: (Sender<(CheckId, Arc<Analysis>)>, Receiver<(CheckId, Arc<Analysis>)>),
+    checked: (Sender<Found>, Receiver<Found>),
+}
+
+/// What a thread has found out.
+enum Found {
+    /// A check has ended.
+    Whole(CheckId, Arc<Analysis>),
+    /// These dialects accept the project of a file.
+    Dialects(PathBuf, Vec<Dialect>),
 }
 
 /// What happens next.
 enum Event {
     Message(Message),
-    /// A check has ended.
-    Checked(CheckId, Arc<Analysis>),
+    Found(Found),
     /// Nothing is typed: there is time for what waits.
     Pause,
     /// The editor is gone.
@@ -117,12 +134,7 @@ impl Server<'_> {
                 Event::Message(Message::Notification(it)) => self.notified(it, &mut waiting)?,
                 // It asks nothing of the editor that it needs.
                 Event::Message(Message::Response(_)) => {}
-                Event::Checked(id, analysis) => {
-                    if let Some(project) = self.projects.iter_mut().find(|it| it.check() == Some(id)) {
-                        project.checked(analysis);
-                        self.publish()?;
-                    }
-                }
+                Event::Found(it) => self.found(it)?,
                 Event::Pause => match waiting.iter().position(|it| self.project_asked(it).is_none()) {
                     Some(at) => {
                         if let Some(request) = waiting.remove(at) {
@@ -157,7 +169,7 @@ impl Server<'_> {
         };
         select! {
             recv(self.connection.receiver) -> it => it.map_or(Event::End, Event::Message),
-            recv(self.checked.1) -> it => it.map_or(Event::End, |it| Event::Checked(it.0, it.1)),
+            recv(self.checked.1) -> it => it.map_or(Event::End, Event::Found),
             default(pause) => Event::Pause,
         }
     }
@@ -200,6 +212,9 @@ impl Server<'_> {
             }
             LspNotificationMethod::TextDocumentDidSave => {
                 if let Some(params) = read::<DidSaveTextDocumentParams>(it.params) {
+                    let path = uri::path(&params.text_document.uri);
+                    let saved = self.projects.iter_mut().filter(|it| path.as_ref().is_some_and(|path| it.has(path)));
+                    saved.for_each(Project::saved);
                     self.reread(&[params.text_document.uri]);
                 }
             }
@@ -324,11 +339,37 @@ impl Server<'_> {
         self.checks += 1;
         let id = CheckId(self.checks);
         let (check, ended) = (project.begin_check(&self.documents, id), self.checked.0.clone());
-        let thread = thread::Builder::new().stack_size(STACK).spawn(move || ended.send((id, check())));
+        let thread = thread::Builder::new().stack_size(STACK).spawn(move || ended.send(Found::Whole(id, check())));
         if thread.is_err() {
             let analysis = project.whole(&self.documents);
             project.checked(analysis);
         }
+    }
+
+    /// Takes what a thread has found out, and says what is new.
+    fn found(&mut self, it: Found) -> Result<(), String> {
+        match it {
+            Found::Whole(id, analysis) => {
+                let Some(project) = self.projects.iter_mut().find(|it| it.check() == Some(id)) else { return Ok(()) };
+                project.checked(analysis);
+                let first = project.unit.paths.first().cloned();
+                if let (Some(ask), Some(path)) = (project.ask_dialects(), first) {
+                    let ended = self.checked.0.clone();
+                    let work = move || ended.send(Found::Dialects(path, ask()));
+                    // Without a thread there is no advice.
+                    drop(thread::Builder::new().stack_size(STACK).spawn(work));
+                }
+            }
+            Found::Dialects(path, dialects) => {
+                let Some(project) = self.projects.iter_mut().find(|it| it.has(&path)) else { return Ok(()) };
+                if dialects.is_empty() {
+                    return Ok(());
+                }
+                project.dialects = dialects;
+                self.open.iter_mut().filter(|it| project.has(&it.path)).for_each(|it| it.is_due = true);
+            }
+        }
+        self.publish()
     }
 
     /// What is known of a project that has been checked.
@@ -368,7 +409,12 @@ impl Server<'_> {
             }
         };
         let analysis = self.whole(project);
-        self.projects[project].file(path).map(|it| problems::of(&analysis, it)).unwrap_or_default()
+        let project = &self.projects[project];
+        let mut found = project.file(path).map(|it| problems::of(&analysis, it)).unwrap_or_default();
+        if !project.dialects.is_empty() {
+            found.extend(dialects::hint(&found, &project.dialects));
+        }
+        found
     }
 
     fn publish_one(

@@ -4,6 +4,7 @@ use super::problems::shown;
 use crate::project::Analysis;
 use crate::uri;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, TextEdit, WorkspaceEdit};
+use staunch_frontend::Severity;
 use std::collections::HashMap;
 
 pub fn actions(analysis: &Analysis, file: u16, within: Range) -> Vec<CodeAction> {
@@ -32,4 +33,10 @@ pub fn actions(analysis: &Analysis, file: u16, within: Range) -> Vec<CodeAction>
         })
     });
     fixes.collect()
+}
+
+/// Whether there are errors on the lines of a range.
+pub fn has_errors(analysis: &Analysis, file: u16, within: Range) -> bool {
+    let own = analysis.index.diagnostics.iter().filter(|it| it.span.file == file && it.severity == Severity::Error);
+    own.map(|it| analysis.range(it.span)).any(|it| it.start.line <= within.end.line && within.start.line <= it.end.line)
 }

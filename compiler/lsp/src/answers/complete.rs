@@ -40,7 +40,7 @@ pub fn complete(project: &mut Project, documents: &Documents, path: &Path, posit
     let here = Here { file, at: count(start), is_member, is_connected: is_connected(document, start) };
     let offers = &found.index.offers;
     // An editor asks again where it would show more of them: where letters are deleted.
-    let is_near = |it: &&Offer| offers.len() < MANY || holds(&it.name, typed);
+    let is_near = |it: &&Offer| offers.len() < MANY || is_meant(&it.name, typed);
     let offers = offers.iter().filter(|it| it.name != HERE && here.takes(&found, it)).filter(is_near);
     let mut items: Vec<_> = offers.map(|it| item(&found, it, &here)).collect();
     if !is_member && !document[..start].trim_end().ends_with(['#', '%']) {
@@ -105,6 +105,17 @@ impl Here {
 fn is_connected(text: &str, start: usize) -> bool {
     let rest = text[start..].trim_start_matches(|it: char| it.is_alphanumeric() || it == '_').trim_start();
     rest.starts_with(":=") || rest.starts_with("=>")
+}
+
+/// Whether what is typed may be short for a name: it begins a word of it, and the rest follows.
+fn is_meant(name: &str, typed: &str) -> bool {
+    let mut before = '_';
+    name.char_indices().any(|(at, letter)| {
+        let begins_word = !before.is_alphabetic() || before.is_lowercase() && letter.is_uppercase();
+        before = letter;
+        let first = typed.chars().next().is_none_or(|it| it.eq_ignore_ascii_case(&letter));
+        begins_word && first && holds(&name[at..], typed)
+    })
 }
 
 /// The part of a name that is before a place, and where it begins.
@@ -251,4 +262,18 @@ fn words(typed: &str) -> Vec<CompletionItem> {
         ..CompletionItem::default()
     });
     snippets.chain(plain).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_meant;
+
+    #[test]
+    fn words_of_a_name_are_typed_by_their_beginnings() {
+        for typed in ["", "m", "MV", "maxV", "value", "V"] {
+            assert!(is_meant("MaxValue", typed), "{typed}");
+        }
+        assert!(!is_meant("MaxValue", "alue"));
+        assert!(is_meant("int_to_real", "tr") && !is_meant("int_to_real", "o"));
+    }
 }

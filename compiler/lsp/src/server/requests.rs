@@ -2,7 +2,7 @@
 
 use super::{Refused, Server};
 use crate::answers::{
-    actions, complete, folds, hierarchy, hints, layout, navigate, rename, select, signature, symbols, tokens,
+    actions, complete, dialects, folds, hierarchy, hints, layout, navigate, rename, select, signature, symbols, tokens,
 };
 use crate::place::Place;
 use crate::project::{self, Analysis};
@@ -96,7 +96,17 @@ impl Server<'_> {
             }
             Method::TextDocumentCodeAction => {
                 let within = read::<CodeActionParams>(params.clone())?.range;
-                self.file(&params, |it, file| actions::actions(it, file, within))
+                let (path, project) = self.document(&params)?;
+                let analysis = self.whole(project);
+                let project = &self.projects[project];
+                let Some(file) = project.file(&path) else { return Ok(Json::Null) };
+                let mut found = actions::actions(&analysis, file, within);
+                if let Some(choice) = project.unit.choice.as_ref().filter(|it| it.has_settings || self.can_create)
+                    && actions::has_errors(&analysis, file, within)
+                {
+                    found.extend(project.dialects.iter().map(|it| dialects::choose(choice, *it)));
+                }
+                json(found)
             }
             Method::TextDocumentCompletion => {
                 let position = read::<TextDocumentPositionParams>(params.clone())?.position;
