@@ -1,10 +1,12 @@
 //! What each name in the sources means, for an editor: filled while a program is checked, by what decides there what a
 //! name means, and only where it is asked for.
 
+mod asked;
 pub(crate) mod definition;
 mod outline;
 pub(crate) mod recorder;
 
+pub use asked::{Asked, Stop};
 pub use definition::{DefId, Definition, DefinitionKind};
 pub use recorder::Meaning;
 
@@ -12,8 +14,6 @@ use crate::source::{Sources, Span};
 use crate::{Diagnostic, ast};
 use recorder::{Named, Offered, Recorder};
 use rustc_hash::FxHashMap;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the names of a program mean, for an editor. Sources with mistakes have an index, too: a name that could not be
 /// resolved has no entry.
@@ -32,42 +32,6 @@ pub struct Index {
     parts: Vec<(DefId, DefId)>,
     pub(crate) asked: Asked,
     pub(crate) stop: Stop,
-}
-
-/// What an editor asks about a program.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Asked {
-    /// What is wrong with it, and what each name means.
-    #[default]
-    All,
-    /// What the names mean that are around a byte of a file: the other bodies are not checked, and nothing is reported.
-    Around(u16, u32),
-    /// The same, and what else a name could be that begins there, or less than so many bytes after it.
-    Names(u16, u32, u32),
-}
-
-impl Asked {
-    /// The place that it is about.
-    pub(crate) fn place(self) -> Option<(u16, u32)> {
-        match self {
-            Self::All => None,
-            Self::Around(file, at) | Self::Names(file, at, _) => Some((file, at)),
-        }
-    }
-}
-
-/// Ends the making of an index that nobody waits for any more: its text is another one now.
-#[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<AtomicBool>);
-
-impl Stop {
-    pub fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
-    }
-
-    pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
-    }
 }
 
 /// A name where it is used.

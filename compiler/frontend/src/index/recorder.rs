@@ -1,7 +1,7 @@
 //! What is noted while a program is checked.
 
+use super::asked::{Asked, Stop};
 use super::definition::DefId;
-use super::{Asked, Stop};
 use crate::source::Span;
 use rustc_hash::FxHashMap;
 use staunch_ir::{BlockId, Elementary, EnumId};
