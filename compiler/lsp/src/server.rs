@@ -214,7 +214,10 @@ impl Server<'_> {
                 if let Some(params) = read::<DidSaveTextDocumentParams>(it.params) {
                     let path = uri::path(&params.text_document.uri);
                     let saved = self.projects.iter_mut().filter(|it| path.as_ref().is_some_and(|path| it.has(path)));
-                    saved.for_each(Project::saved);
+                    for project in saved {
+                        project.saved();
+                        ask_dialects(project, &self.checked.0);
+                    }
                     self.reread(&[params.text_document.uri]);
                 }
             }
@@ -352,13 +355,7 @@ impl Server<'_> {
             Found::Whole(id, analysis) => {
                 let Some(project) = self.projects.iter_mut().find(|it| it.check() == Some(id)) else { return Ok(()) };
                 project.checked(analysis);
-                let first = project.unit.paths.first().cloned();
-                if let (Some(ask), Some(path)) = (project.ask_dialects(), first) {
-                    let ended = self.checked.0.clone();
-                    let work = move || ended.send(Found::Dialects(path, ask()));
-                    // Without a thread there is no advice.
-                    drop(thread::Builder::new().stack_size(STACK).spawn(work));
-                }
+                ask_dialects(project, &self.checked.0);
             }
             Found::Dialects(path, dialects) => {
                 let Some(project) = self.projects.iter_mut().find(|it| it.has(&path)) else { return Ok(()) };
@@ -426,6 +423,17 @@ impl Server<'_> {
         let params = PublishDiagnosticsParams { uri, version, diagnostics };
         let method = LspNotificationMethod::TextDocumentPublishDiagnostics.as_str().to_owned();
         self.send(Message::Notification(Notification::new(method, params)))
+    }
+}
+
+/// Begins to ask other dialects about a project that has errors, where that is due, in a thread of its own.
+fn ask_dialects(project: &mut Project, ended: &Sender<Found>) {
+    let first = project.unit.paths.first().cloned();
+    if let (Some(ask), Some(path)) = (project.ask_dialects(), first) {
+        let ended = ended.clone();
+        let work = move || ended.send(Found::Dialects(path, ask()));
+        // Without a thread there is no advice.
+        drop(thread::Builder::new().stack_size(STACK).spawn(work));
     }
 }
 
