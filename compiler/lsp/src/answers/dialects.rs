@@ -37,7 +37,7 @@ pub fn choose(choice: &Choice, dialect: Dialect) -> CodeAction {
         },
         edits: vec![Edit::TextEdit(edit)],
     };
-    let create = (!choice.has_settings).then(|| DocumentChange::CreateFile(create));
+    let create = (!choice.has_settings).then_some(DocumentChange::CreateFile(create));
     CodeAction {
         title: format!("Use the dialect `{}`: write it into staunch.toml", dialect.name()),
         kind: Some(CodeActionKind::QuickFix),

@@ -1,6 +1,7 @@
 //! An editor in a test: it opens documents, types, and asks.
 #![allow(dead_code, reason = "each test takes a part of it")]
 
+#[allow(dead_code, reason = "each test takes a part of it")]
 pub mod programs;
 
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
