@@ -1,6 +1,6 @@
 //! The index that an editor asks: each name of each case that is accepted has its meaning in it.
 
-use staunch_frontend::{Meaning, Sources, index};
+use staunch_frontend::{Asked, Meaning, Sources, Stop, index};
 use staunch_syntax::lex::{Kind, lex};
 use staunch_tests::case::{self, Case};
 use staunch_tests::cases;
@@ -99,7 +99,7 @@ fn each_name_of_an_accepted_case_has_a_meaning() {
 
 /// How many names there are; those without a meaning are added.
 fn check(case: &Case, sources: &Sources, missing: &mut Vec<String>) -> usize {
-    let (index, _) = index(sources, &case.settings().options, None);
+    let (index, _) = index(sources, &case.settings().options, Asked::All, &Stop::default());
     let mut count = 0;
     for (source, file) in sources.files().iter().zip(0u16..) {
         // What conditions leave out is not a part of the program; what is assembled has words of the assembly's.

@@ -1,10 +1,10 @@
 //! `lsp`: an editor's questions, answered on standard input and output.
 
 use crate::args::Common;
-use crate::{input, session};
+use crate::{input, other_dialects, session};
 use staunch_build::{Project, listing};
 use staunch_frontend::{Source, Sources};
-use staunch_lsp::{Connection, Host, Unit};
+use staunch_lsp::{Choice, Connection, Host, Unit};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,10 @@ struct Disk<'a> {
 impl Host for Disk<'_> {
     fn unit(&self, path: &Path) -> Result<Unit, String> {
         let folder = path.parent().unwrap_or(path);
-        let mut project = Project::find(folder)?.unwrap_or_default();
+        let found = Project::find(folder)?;
+        let settings = found.as_ref().map_or(folder, |it| &it.folder).join("staunch.toml");
+        let has_settings = found.is_some();
+        let mut project = found.unwrap_or_default();
         let libraries = session::seen(&project, "libraries", &project.libraries)?;
         let listed = session::seen(&project, "files", &project.files)?;
         let is_in = |arguments: &[PathBuf]| {
@@ -36,6 +39,7 @@ impl Host for Disk<'_> {
             Some(named) => input::read(&named, &libraries)?,
             None => self.alone(path, &libraries)?,
         };
+        let is_chosen = self.common.dialect.is_some() || project.dialect.is_some() || sources.dialect().is_some();
         let options = {
             project.dialect = project.dialect.take().or_else(|| sources.dialect().map(str::to_owned));
             session::options(self.common, &project)?
@@ -51,6 +55,7 @@ impl Host for Disk<'_> {
             options: staunch_frontend::Options { is_run: false, ..options },
             levels: session::levels(self.common, &project)?,
             layout: project.layout.clone(),
+            choice: (!is_chosen).then_some(Choice { accepting: other_dialects::accepting, settings, has_settings }),
         })
     }
 }

@@ -45,6 +45,14 @@ pub fn advice(sources: &Sources, options: &Options, found: &[Diagnostic]) -> Opt
     (2 * fewer < errors).then_some(Advice::Fewer { dialect, errors, fewer })
 }
 
+/// The dialects that accept sources which have these diagnostics.
+pub fn accepting(sources: &Sources, options: &Options, found: &[Diagnostic]) -> Vec<Dialect> {
+    match advice(sources, options, found) {
+        Some(Advice::Accepted(dialects)) => dialects,
+        Some(Advice::Fewer { .. }) | None => Vec::new(),
+    }
+}
+
 fn errors_of(sources: &Sources, options: &Options) -> usize {
     count(&staunch_frontend::check(sources, options))
 }

@@ -1,10 +1,12 @@
 //! What each name in the sources means, for an editor: filled while a program is checked, by what decides there what a
 //! name means, and only where it is asked for.
 
+mod asked;
 pub(crate) mod definition;
 mod outline;
 pub(crate) mod recorder;
 
+pub use asked::{Asked, Stop};
 pub use definition::{DefId, Definition, DefinitionKind};
 pub use recorder::Meaning;
 
@@ -26,7 +28,10 @@ pub struct Index {
     pub diagnostics: Vec<Diagnostic>,
     /// The definitions by the places of their names.
     places: Vec<DefId>,
-    pub(crate) asked: Option<(u16, u32)>,
+    /// Each declaration after what holds it, in the order of these.
+    parts: Vec<(DefId, DefId)>,
+    pub(crate) asked: Asked,
+    pub(crate) stop: Stop,
 }
 
 /// A name where it is used.
@@ -57,9 +62,16 @@ fn is_name(text: &str) -> bool {
 }
 
 impl Index {
-    /// One that has all that a name could be, where one begins at a place.
-    pub(crate) fn asked(asked: Option<(u16, u32)>) -> Self {
-        Self { asked, ..Self::default() }
+    pub(crate) fn asked(asked: Asked, stop: Stop) -> Self {
+        Self { asked, stop, ..Self::default() }
+    }
+
+    /// The place around which names are asked for, where that is in a POU or a type. What is elsewhere, in a CONFIGURATION say, the
+    /// whole program gives its meaning.
+    pub(crate) fn around(&self) -> Option<(u16, u32)> {
+        let (file, at) = self.asked.place()?;
+        let holds = |it: &&Definition| it.extent.file == file && it.extent.start <= at && at <= it.extent.end;
+        self.definitions.iter().filter(holds).any(|it| it.kind.is_whole_for_its_names()).then_some((file, at))
     }
 
     /// Reads what the files declare.
@@ -67,6 +79,8 @@ impl Index {
         self.definitions = outline::definitions(files);
         self.places = (0..self.definitions.len()).map(DefId).collect();
         self.places.sort_by_key(|it| (self.definitions[it.0].name.file, self.definitions[it.0].name.start));
+        self.parts = self.ids().filter_map(|(id, it)| Some((it.owner?, id))).collect();
+        self.parts.sort_unstable();
     }
 
     /// Adds what checking has found out.
@@ -74,6 +88,7 @@ impl Index {
         let known: FxHashMap<Span, DefId> = self.ids().map(|(id, it)| (it.name, id)).collect();
         let mut uses: FxHashMap<Span, Meaning> = self.uses.drain(..).map(|it| (it.span, it.meaning)).collect();
         let (found, offered) = recorder.settled();
+        uses.reserve(found.len());
         for (span, target) in found {
             // What the compiler writes out has the place of what it stands for. The library's names may be other ones.
             let text = sources.text(span);
@@ -138,6 +153,8 @@ impl Index {
 
     /// What a declaration holds: the variables of a POU, the members of a structure.
     pub fn parts_of(&self, id: DefId) -> impl Iterator<Item = (DefId, &Definition)> {
-        self.ids().filter(move |it| it.1.owner == Some(id))
+        let from = self.parts.partition_point(|it| it.0 < id);
+        let own = self.parts[from..].iter().take_while(move |it| it.0 == id);
+        own.map(|it| (it.1, self.get(it.1)))
     }
 }

@@ -43,7 +43,7 @@ pub use staunch_syntax::{ast, format, vendor};
 
 pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, Subject, excerpt, render};
 pub use dialect::{Dialect, rules};
-pub use index::{DefId, Definition, DefinitionKind, Index, Meaning, Offer, Use};
+pub use index::{Asked, DefId, Definition, DefinitionKind, Index, Meaning, Offer, Stop, Use};
 pub use mutate::{Mutant, mutants};
 pub use names::functions::standard_functions;
 pub use options::{AskedAt, OPEN_OPTIONS, OpenOption, Options, Question, Stops};
@@ -63,6 +63,7 @@ use log::Log;
 use rustc_hash::FxHashSet;
 use staunch_ir::Program;
 use types::coverage::Coverage;
+use types::declarations::Declarations;
 use types::whole::Whole;
 use vendor::{Problem, Trouble};
 
@@ -137,11 +138,10 @@ pub fn check(sources: &Sources, options: &Options) -> Vec<Diagnostic> {
     with_library(sources, options, Bodies::Dropped, None).diagnostics
 }
 
-/// What [`check`] has to say, and what the sources' names mean. Where they use the library, its units are files after
-/// theirs: the sources are given back with these. Where a name begins at the place that is `asked` about, the index has all
-/// that it could be.
-pub fn index(sources: &Sources, options: &Options, asked: Option<(u16, u32)>) -> (Index, Option<Sources>) {
-    let mut index = Index::asked(asked);
+/// What [`check`] has to say, and what the sources' names mean, or as much of that as is `asked`. Where they use the library, its
+/// units are files after theirs: the sources are given back with these. Of what was stopped, the index is not whole.
+pub fn index(sources: &Sources, options: &Options, asked: Asked, stop: &Stop) -> (Index, Option<Sources>) {
+    let mut index = Index::asked(asked, stop.clone());
     let (diagnostics, extended) = match prelude::Extended::of(sources, options) {
         Some(extended) => {
             let found = run(&extended.sources, options, Bodies::Dropped, Some(&mut index)).diagnostics;
@@ -151,6 +151,30 @@ pub fn index(sources: &Sources, options: &Options, asked: Option<(u16, u32)>) ->
     };
     index.diagnostics = diagnostics;
     (index, extended)
+}
+
+/// A source without what is written in its bodies: what it declares is all that others need of it.
+pub fn without_bodies(sources: &Sources, file: u16) -> Source {
+    let tree = parse_file(sources, file);
+    let mut parts = Vec::new();
+    for item in &tree.items {
+        let pou = match item {
+            ast::Item::Pou(pou) => pou,
+            ast::Item::Test(it) => &it.pou,
+            ast::Item::Types(_) | ast::Item::Globals(_) | ast::Item::Configuration(_) => continue,
+        };
+        let bodies = core::iter::once(pou).chain(&pou.routines).map(|it| &it.body);
+        parts.extend(bodies.flatten().map(|it| it.span));
+    }
+    sources.get(file).blanked(parts.into_iter().filter(|it| it.file == file))
+}
+
+/// What some of the sources declare: nothing is checked for that.
+pub fn outline(sources: &Sources, files: core::ops::Range<u16>) -> Index {
+    let mut index = Index::default();
+    let files: Vec<_> = files.map(|it| parse_file(sources, it)).collect();
+    index.declare(&files);
+    index
 }
 
 /// Whether the program that is made has the bodies of its POUs, or the calls in them alone.
@@ -187,12 +211,15 @@ fn run_with(
     mut index: Option<&mut Index>,
 ) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
-    log.index = index.as_ref().map(|it| Recorder::asked(it.asked));
+    log.index = index.as_ref().map(|it| Recorder::new(it.asked, it.stop.clone()));
     let Some(files) = parse_all(sources, &mut log.diagnostics) else {
         return Some(Compilation::rejected(log.diagnostics));
     };
     if let Some(index) = &mut index {
         index.declare(&files);
+    }
+    if let (Some(recorder), Some(index)) = (&mut log.index, &index) {
+        recorder.around = index.around();
     }
     let Trees { mut files, groups, stubs, allowances, has_tests } = write_out(files, &mut log);
     let mut runs = declare::run::runs(&files, options.tests, sources, &whole.shared);
@@ -205,6 +232,9 @@ fn run_with(
     declarations.tests.fixtures.clone_from(&groups.of_fixtures);
     declarations.tests.callers = testing::fixture::callers(&files);
     let checked = body::check(&mut declarations, &mut bodies, keep);
+    if let Some(index) = index.as_deref_mut().filter(|it| it.around().is_some() || it.stop.is_set()) {
+        return Some(partial(declarations, has_tests && !options.tests, index));
+    }
     let shared = declarations.shared_programs(&files);
     if whole.grow(Whole { shared, ..declarations.whole() }) {
         return None;
@@ -251,6 +281,18 @@ fn run_with(
     Some(compilation)
 }
 
+/// Ends the pipeline where no more than the names around a place are asked for, or nothing any more.
+fn partial(mut declarations: Declarations<'_>, is_in_tests: bool, index: &mut Index) -> Compilation {
+    let (sources, options) = (declarations.log.sources, declarations.log.options);
+    if let Some(found) = declarations.log.index.take() {
+        index.add(found, sources);
+    }
+    if is_in_tests && !index.stop.is_set() {
+        run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped, Some(index));
+    }
+    Compilation::rejected(Vec::new())
+}
+
 /// The trees of a program, with all written out that is short for something else: tests, what a class inherits, what
 /// starts the instances.
 struct Trees<'s> {
@@ -281,7 +323,11 @@ fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> 
     let groups = testing::expand(&mut files, log.options.tests, sources, &mut log.diagnostics);
     start_up::expand(&mut files);
     pooled::expand(&mut files, log.options.default_pool);
-    start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
+    // What starts the instances answers an editor only where it asks about an initial value.
+    let around = log.index.as_ref().and_then(|it| it.around);
+    if around.is_none_or(|place| files.iter().any(|it| it.is_in_declaration(place))) {
+        start::expand(&mut files, &|it| log.dialect(it).binds_by_assignment());
+    }
     tasks::expand(&mut files, log.options.tests);
     let allowances = allow::Allowances::read(&files, &mut log.diagnostics);
     Trees { files, groups, stubs, allowances, has_tests }

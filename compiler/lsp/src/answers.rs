@@ -3,6 +3,7 @@
 pub mod actions;
 pub mod complete;
 pub mod describe;
+pub mod dialects;
 pub mod folds;
 pub mod hierarchy;
 pub mod hints;

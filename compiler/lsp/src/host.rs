@@ -1,7 +1,7 @@
 //! What the server asks of the machine it runs on.
 
 use staunch_frontend::format::Style;
-use staunch_frontend::{Levels, Options, Sources};
+use staunch_frontend::{Diagnostic, Dialect, Levels, Options, Sources};
 use std::path::{Path, PathBuf};
 
 /// Finds the files of projects.
@@ -22,4 +22,23 @@ pub struct Unit {
     pub options: Options,
     pub levels: Levels,
     pub layout: Style,
+    /// Where nobody has chosen the dialect.
+    pub choice: Option<Choice>,
+}
+
+/// A dialect that may be another one.
+#[derive(Clone, Debug)]
+pub struct Choice {
+    /// Those that accept sources which have these diagnostics in that of the options.
+    pub accepting: fn(&Sources, &Options, &[Diagnostic]) -> Vec<Dialect>,
+    /// The file that says which one it is, and whether it exists.
+    pub settings: PathBuf,
+    pub has_settings: bool,
+}
+
+impl Unit {
+    /// The source that a file is.
+    pub fn file(&self, path: &Path) -> Option<u16> {
+        self.paths.iter().zip(0u16..).find(|it| it.0 == path).map(|it| it.1)
+    }
 }

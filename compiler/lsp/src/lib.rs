@@ -13,6 +13,6 @@ mod answers;
 
 mod server;
 
-pub use host::{Host, Unit};
+pub use host::{Choice, Host, Unit};
 pub use lsp_server::Connection;
 pub use server::serve;

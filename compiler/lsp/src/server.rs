@@ -3,10 +3,11 @@
 mod capabilities;
 mod requests;
 
-use crate::answers::problems;
+use crate::answers::{dialects, problems};
 use crate::host::Host;
-use crate::project::{Documents, Project};
+use crate::project::{Analysis, CheckId, Documents, Project};
 use crate::{place, uri};
+use crossbeam_channel::{Receiver, Sender, select};
 use gen_lsp_types::{
     CancelParams, DidChangeTextDocumentParams, DidChangeWatchedFilesParams, DidCloseTextDocumentParams,
     DidOpenTextDocumentParams, DidSaveTextDocumentParams, InitializeParams, LspNotificationMethod, LspRequestMethod,
@@ -14,14 +15,20 @@ use gen_lsp_types::{
 };
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use serde_json::Value as Json;
-use staunch_frontend::Source;
+use staunch_frontend::{Dialect, Source};
 use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::thread;
 use std::time::Duration;
 
 /// How long nothing is typed before diagnostics are sent.
-const PAUSE: Duration = Duration::from_millis(60);
+const PAUSE: Duration = Duration::from_millis(20);
+/// How long the server waits where it has nothing to do.
+const FOREVER: Duration = Duration::from_secs(1 << 20);
+/// Of a thread that checks: deep enough for expressions and statements at the parser's nesting limit.
+const STACK: usize = 256 << 20;
 
 /// Why a request has no answer.
 #[derive(Debug)]
@@ -48,12 +55,27 @@ impl From<String> for Refused {
 /// When the editor does not keep to the protocol, or is gone.
 pub fn serve(connection: &Connection, host: &dyn Host) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|it| it.to_string())?;
+    let can_create = can_create_files(&params);
     let _: InitializeParams = serde_json::from_value(params).map_err(|it| format!("initialize: {it}"))?;
     let result = capabilities::initialized();
     connection.initialize_finish(id, result).map_err(|it| it.to_string())?;
-    let mut server =
-        Server { connection, host, projects: Vec::new(), documents: Documents::default(), open: Vec::new() };
+    let mut server = Server {
+        connection,
+        host,
+        projects: Vec::new(),
+        documents: Documents::default(),
+        open: Vec::new(),
+        checks: 0,
+        can_create,
+        checked: crossbeam_channel::unbounded(),
+    };
     server.run()
+}
+
+/// Whether an editor makes files, as it says at the start.
+fn can_create_files(params: &Json) -> bool {
+    let edits = &params["capabilities"]["workspace"]["workspaceEdit"];
+    edits["resourceOperations"].as_array().is_some_and(|it| it.iter().any(|it| it == "create"))
 }
 
 /// A document that is open.
@@ -72,39 +94,83 @@ pub(crate) struct Server<'a> {
     projects: Vec<Project>,
     documents: Documents,
     open: Vec<Open>,
+    /// The editor makes files where an edit asks for that.
+    can_create: bool,
+    /// How many checks have begun.
+    checks: u64,
+    /// What they have found out.
+    checked: (Sender<Found>, Receiver<Found>),
+}
+
+/// What a thread has found out.
+enum Found {
+    /// A check has ended.
+    Whole(CheckId, Arc<Analysis>),
+    /// These dialects accept the project of a file.
+    Dialects(PathBuf, Vec<Dialect>),
+}
+
+/// What happens next.
+enum Event {
+    Message(Message),
+    Found(Found),
+    /// Nothing is typed: there is time for what waits.
+    Pause,
+    /// The editor is gone.
+    End,
 }
 
 impl Server<'_> {
     fn run(&mut self) -> Result<(), String> {
         let mut waiting: VecDeque<Request> = VecDeque::new();
         loop {
-            let is_due = self.open.iter().any(|it| it.is_due);
-            let next = match () {
-                () if !waiting.is_empty() => self.connection.receiver.try_recv().ok(),
-                () if is_due => self.connection.receiver.recv_timeout(PAUSE).ok(),
-                () => match self.connection.receiver.recv() {
-                    Ok(message) => Some(message),
-                    Err(_) => return Ok(()),
-                },
-            };
-            match next {
-                Some(Message::Request(request)) => {
+            match self.next(&waiting) {
+                Event::Message(Message::Request(request)) => {
                     if self.connection.handle_shutdown(&request).map_err(|it| it.to_string())? {
                         return Ok(());
                     }
                     waiting.push_back(request);
                 }
-                Some(Message::Notification(it)) => self.notified(it, &mut waiting)?,
+                Event::Message(Message::Notification(it)) => self.notified(it, &mut waiting)?,
                 // It asks nothing of the editor that it needs.
-                Some(Message::Response(_)) => {}
-                None => match waiting.pop_front() {
-                    Some(request) => {
-                        let response = self.answered(request);
-                        self.send(Message::Response(response))?;
+                Event::Message(Message::Response(_)) => {}
+                Event::Found(it) => self.found(it)?,
+                Event::Pause => match waiting.iter().position(|it| self.project_asked(it).is_none()) {
+                    Some(at) => {
+                        if let Some(request) = waiting.remove(at) {
+                            let response = self.answered(request);
+                            self.send(Message::Response(response))?;
+                        }
                     }
-                    None => self.publish()?,
+                    None => {
+                        let asked: Vec<_> = waiting.iter().filter_map(|it| self.project_asked(it)).collect();
+                        asked.into_iter().for_each(|it| self.check(it));
+                        self.publish()?;
+                    }
                 },
+                Event::End => return Ok(()),
             }
+        }
+    }
+
+    fn next(&self, waiting: &VecDeque<Request>) -> Event {
+        // Changes are read before a request is answered, so that no answer is about an older text.
+        if let Ok(message) = self.connection.receiver.try_recv() {
+            return Event::Message(message);
+        }
+        let runs = |project: Option<usize>| project.is_some_and(|it| self.projects[it].check().is_some());
+        let project = |path: &Path| self.projects.iter().position(|it| it.has(path));
+        let pause = if waiting.iter().any(|it| !runs(self.project_asked(it))) {
+            Duration::ZERO
+        } else if self.open.iter().any(|it| it.is_due && !runs(project(&it.path))) {
+            PAUSE
+        } else {
+            FOREVER
+        };
+        select! {
+            recv(self.connection.receiver) -> it => it.map_or(Event::End, Event::Message),
+            recv(self.checked.1) -> it => it.map_or(Event::End, Event::Found),
+            default(pause) => Event::Pause,
         }
     }
 
@@ -146,6 +212,12 @@ impl Server<'_> {
             }
             LspNotificationMethod::TextDocumentDidSave => {
                 if let Some(params) = read::<DidSaveTextDocumentParams>(it.params) {
+                    let path = uri::path(&params.text_document.uri);
+                    let saved = self.projects.iter_mut().filter(|it| path.as_ref().is_some_and(|path| it.has(path)));
+                    for project in saved {
+                        project.saved();
+                        ask_dialects(project, &self.checked.0);
+                    }
                     self.reread(&[params.text_document.uri]);
                 }
             }
@@ -179,7 +251,7 @@ impl Server<'_> {
         self.open.retain(|it| it.path != path);
         self.open.push(Open { uri, path: path.clone(), version, is_due: true });
         match self.projects.iter_mut().find(|it| it.has(&path)) {
-            Some(project) => project.forget(),
+            Some(project) => project.has_changed(&path),
             None => _ = self.project_of(&path),
         }
         self.all_are_due(&path);
@@ -209,7 +281,7 @@ impl Server<'_> {
     /// What a text changes is known of all files of its project anew.
     fn all_are_due(&mut self, path: &Path) {
         for project in self.projects.iter_mut().filter(|it| it.has(path)) {
-            project.forget();
+            project.has_changed(path);
             self.open.iter_mut().filter(|it| project.has(&it.path)).for_each(|it| it.is_due = true);
         }
     }
@@ -252,10 +324,66 @@ impl Server<'_> {
         Ok(self.projects.len() - 1)
     }
 
-    /// Says what there is to say of the open documents of which it is not known.
+    /// The project that has to be checked before a request is answered.
+    fn project_asked(&self, request: &Request) -> Option<usize> {
+        if !requests::needs_check(&LspRequestMethod::from(request.method.as_str())) {
+            return None;
+        }
+        let path = self.path(&request.params).ok()?;
+        self.projects.iter().position(|it| it.has(&path)).filter(|it| self.projects[*it].known().is_none())
+    }
+
+    /// Begins to check a project, in a thread of its own, where that has not begun.
+    fn check(&mut self, project: usize) {
+        let project = &mut self.projects[project];
+        if project.known().is_some() || project.check().is_some() {
+            return;
+        }
+        self.checks += 1;
+        let id = CheckId(self.checks);
+        let (check, ended) = (project.begin_check(&self.documents, id), self.checked.0.clone());
+        let thread = thread::Builder::new().stack_size(STACK).spawn(move || ended.send(Found::Whole(id, check())));
+        if thread.is_err() {
+            let analysis = project.whole(&self.documents);
+            project.checked(analysis);
+        }
+    }
+
+    /// Takes what a thread has found out, and says what is new.
+    fn found(&mut self, it: Found) -> Result<(), String> {
+        match it {
+            Found::Whole(id, analysis) => {
+                let Some(project) = self.projects.iter_mut().find(|it| it.check() == Some(id)) else { return Ok(()) };
+                project.checked(analysis);
+                ask_dialects(project, &self.checked.0);
+            }
+            Found::Dialects(path, dialects) => {
+                let Some(project) = self.projects.iter_mut().find(|it| it.has(&path)) else { return Ok(()) };
+                if dialects.is_empty() {
+                    return Ok(());
+                }
+                project.dialects = dialects;
+                self.open.iter_mut().filter(|it| project.has(&it.path)).for_each(|it| it.is_due = true);
+            }
+        }
+        self.publish()
+    }
+
+    /// What is known of a project that has been checked.
+    fn whole(&mut self, project: usize) -> Arc<Analysis> {
+        self.projects[project].whole(&self.documents)
+    }
+
+    /// Says what there is to say of the open documents of which it is not known; of what was not checked, when it is.
     fn publish(&mut self) -> Result<(), String> {
         let due: Vec<_> = self.open.iter().filter(|it| it.is_due).map(|it| it.path.clone()).collect();
         for path in due {
+            if let Ok(project) = self.project_of(&path)
+                && self.projects[project].known().is_none()
+            {
+                self.check(project);
+                continue;
+            }
             let found = catch_unwind(AssertUnwindSafe(|| self.problems(&path))).unwrap_or_default();
             let Some(open) = self.open.iter_mut().find(|it| it.path == path) else { continue };
             open.is_due = false;
@@ -268,7 +396,7 @@ impl Server<'_> {
     /// What there is to say of a file; what is wrong with its project, at its beginning.
     pub fn problems(&mut self, path: &Path) -> Vec<gen_lsp_types::Diagnostic> {
         let project = match self.project_of(path) {
-            Ok(at) => &mut self.projects[at],
+            Ok(at) => at,
             Err(why) => {
                 return vec![gen_lsp_types::Diagnostic {
                     source: Some("staunch".to_owned()),
@@ -277,9 +405,13 @@ impl Server<'_> {
                 }];
             }
         };
-        let levels = project.unit.levels.clone();
-        let analysis = project.analysis(&self.documents);
-        analysis.file(path).map(|it| problems::of(analysis, &levels, it)).unwrap_or_default()
+        let analysis = self.whole(project);
+        let project = &self.projects[project];
+        let mut found = project.file(path).map(|it| problems::of(&analysis, it)).unwrap_or_default();
+        if !project.dialects.is_empty() {
+            found.extend(dialects::hint(&found, &project.dialects));
+        }
+        found
     }
 
     fn publish_one(
@@ -291,6 +423,17 @@ impl Server<'_> {
         let params = PublishDiagnosticsParams { uri, version, diagnostics };
         let method = LspNotificationMethod::TextDocumentPublishDiagnostics.as_str().to_owned();
         self.send(Message::Notification(Notification::new(method, params)))
+    }
+}
+
+/// Begins to ask other dialects about a project that has errors, where that is due, in a thread of its own.
+fn ask_dialects(project: &mut Project, ended: &Sender<Found>) {
+    let first = project.unit.paths.first().cloned();
+    if let (Some(ask), Some(path)) = (project.ask_dialects(), first) {
+        let ended = ended.clone();
+        let work = move || ended.send(Found::Dialects(path, ask()));
+        // Without a thread there is no advice.
+        drop(thread::Builder::new().stack_size(STACK).spawn(work));
     }
 }
 

@@ -3,7 +3,7 @@
 mod support;
 
 use serde_json::json;
-use staunch_frontend::{Dialect, Options, Source, Sources, compile, index};
+use staunch_frontend::{Asked, Dialect, Options, Source, Sources, Stop, compile, index};
 use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ fn program(text: &str, options: &Options) -> Option<String> {
 fn of_file(case: &str, text: &str, options: &Options, before: &str, wrong: &mut Vec<String>) -> usize {
     let mut sources = Sources::default();
     sources.add(Source::decode("main.st", text.as_bytes()));
-    let (index, _) = index(&sources, options, None);
+    let (index, _) = index(&sources, options, Asked::All, &Stop::default());
     let source = sources.get(0);
     if source.is_assembled() {
         return 0;

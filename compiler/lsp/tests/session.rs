@@ -3,7 +3,8 @@
 mod support;
 
 use serde_json::{Value as Json, json};
-use staunch_frontend::Dialect;
+use staunch_frontend::{Dialect, Options, check};
+use staunch_lsp::Choice;
 use support::{Editor, cursor, edited, place, uri};
 
 const PUMP: &str = "\
@@ -375,5 +376,40 @@ fn typing_key_by_key_never_stops_it() {
     assert_eq!(found, same);
     assert!(!found["items"].as_array().expect("a list").is_empty());
     fresh.close();
+    editor.close();
+}
+
+#[test]
+fn a_dialect_that_accepts_the_sources_is_offered() {
+    const TEXT: &str = "PROGRAM Main VAR c : CTU; w : WORD; END_VAR c(RESET := FALSE); w := c.CV; END_PROGRAM\n";
+    let choice = Choice {
+        accepting: |sources, options, _| {
+            let accepts =
+                |dialect: &Dialect| check(sources, &Options { dialect: *dialect, ..options.clone() }).is_empty();
+            [Dialect::Siemens, Dialect::Codesys].into_iter().filter(accepts).collect()
+        },
+        settings: "/plc/staunch.toml".into(),
+        has_settings: false,
+    };
+    let mut editor = Editor::open_with(Dialect::Iec, &[("main.st", TEXT)], Some(choice));
+    let hints = |all: &[Json]| -> Vec<_> {
+        let all = all.iter().filter(|it| it["severity"] == json!(3));
+        all.map(|it| it["message"].as_str().expect("a text").to_owned()).collect()
+    };
+    assert!(hints(&editor.problems("main.st")).is_empty(), "the errors are shown first");
+    let found = editor.problems("main.st");
+    assert_eq!(hints(&found), ["accepted with the dialect `codesys`"]);
+    let params = json!({
+        "textDocument": { "uri": uri("main.st") }, "range": found[0]["range"], "context": { "diagnostics": [] },
+    });
+    let actions = editor.ask("textDocument/codeAction", params);
+    let all = actions.as_array().expect("a list");
+    let action = all.iter().find(|it| it["edit"]["documentChanges"].is_array()).expect("one for the dialect");
+    let changes = &action["edit"]["documentChanges"];
+    assert_eq!((&changes[0]["kind"], &changes[0]["uri"]), (&json!("create"), &json!(uri("staunch.toml"))));
+    assert_eq!(changes[1]["edits"][0]["newText"], json!("dialect = \"codesys\"\n"));
+    // It is not offered where there is no error any more.
+    editor.write("main.st", "PROGRAM Main END_PROGRAM\n");
+    assert!(hints(&editor.problems("main.st")).is_empty());
     editor.close();
 }

@@ -71,6 +71,19 @@ pub struct Region<'s> {
 }
 
 impl<'s> File<'s> {
+    /// Whether a byte of a file is in a type, or in the declaration of a variable of a POU.
+    pub fn is_in_declaration(&self, (file, at): (u16, u32)) -> bool {
+        let holds = |it: Span| it.file == file && it.start <= at && at <= it.end;
+        self.items.iter().any(|it| match it {
+            Item::Pou(pou) | Item::Test(TestUnit { pou, .. }) => {
+                let pous = core::iter::once(pou).chain(&pou.routines);
+                pous.flat_map(|it| &it.blocks).flat_map(|it| &it.vars).any(|it| holds(it.span))
+            }
+            Item::Types(types) => types.iter().any(|it| holds(it.ty.span)),
+            Item::Globals(_) | Item::Configuration(_) => false,
+        })
+    }
+
     /// Takes out the bodies of the POUs, in order, each with those of its routines after it: they can be let
     /// go when they have been checked.
     pub fn take_bodies(&mut self) -> impl Iterator<Item = Vec<Statement<'s>>> {

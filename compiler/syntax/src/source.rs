@@ -153,6 +153,20 @@ impl Source {
         self.is_expression
     }
 
+    /// The same with spaces in place of parts of its text; all else is where it was.
+    #[must_use]
+    pub fn blanked(&self, parts: impl Iterator<Item = Span>) -> Self {
+        let offset = |it: u32| usize::try_from(it).unwrap_or(usize::MAX);
+        let mut bytes = self.text.clone().into_bytes();
+        for span in parts {
+            let part = bytes.get_mut(offset(span.start)..offset(span.end)).into_iter().flatten();
+            part.filter(|it| !matches!(it, b'\n' | b'\r')).for_each(|it| *it = b' ');
+        }
+        let text = String::from_utf8(bytes).unwrap_or_default();
+        let characters = if text.is_ascii() { Vec::new() } else { counted(text.as_bytes()) };
+        Self { text, characters, ..self.clone() }
+    }
+
     /// The Structured Text in a file, also in one of another system's.
     pub fn decode(path: impl Into<String>, bytes: &[u8]) -> Self {
         let file = Self::decoded(path, bytes);
@@ -559,6 +573,11 @@ impl Sources {
         let file = &mut self.files[usize::from(file)];
         let new = Source::decode(file.path.clone(), text.as_bytes());
         *file = Source { library: file.library.clone(), is_bundled: file.is_bundled, ..new };
+    }
+
+    /// Takes another source in the place of one.
+    pub fn put(&mut self, file: u16, source: Source) {
+        self.files[usize::from(file)] = source;
     }
 
     pub fn files(&self) -> &[Source] {

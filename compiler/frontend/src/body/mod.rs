@@ -38,6 +38,10 @@ pub(crate) struct Checked {
 pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Statement<'s>>], keep: Bodies) -> Checked {
     let mut checked = Checked { routines: Vec::new(), stacks: Vec::new(), left_out: None };
     for (slot, body) in bodies.iter_mut().enumerate() {
+        if !is_asked_for(decl, slot, body) {
+            checked.push(None, 0);
+            continue;
+        }
         if decl.is_head(slot) {
             decl.check_has_no_body(
                 body,
@@ -65,12 +69,33 @@ pub(crate) fn check<'s>(decl: &mut Declarations<'s>, bodies: &mut [Vec<ast::Stat
         checked.check_asked_for(decl, slot, bodies, keep);
         slot += 1;
     }
-    let uncalled: Vec<_> = (0..bodies.len()).filter(|it| decl.is_generic(*it) && !decl.has_instances(*it)).collect();
+    let is_uncalled = |it: &usize| decl.is_generic(*it) && !decl.has_instances(*it);
+    let uncalled: Vec<_> =
+        (0..bodies.len()).filter(|it| is_uncalled(it) && is_asked_for(decl, *it, &bodies[*it])).collect();
     uncalled.into_iter().for_each(|it| check_uncalled(decl, it, bodies));
     if let Some(index) = &decl.log.index {
         index.mute(false);
     }
     checked
+}
+
+/// Whether an editor needs a body: it asks about a place in it, or about all of the program. It needs none whose answer it does not
+/// wait for any more.
+fn is_asked_for(decl: &Declarations<'_>, slot: usize, body: &[ast::Statement<'_>]) -> bool {
+    let Some(index) = &decl.log.index else { return true };
+    if index.stop.is_set() {
+        return false;
+    }
+    let Some((file, at)) = index.around else { return true };
+    let holds = |it: Span| it.file == file && it.start <= at && at <= it.end;
+    let pou = decl.pous[slot].ast;
+    if pou.name.text.starts_with("__") {
+        // It is written out, of initial values perhaps.
+        return true;
+    }
+    // The parts of a test are written elsewhere, as are those of a PROGRAM of Automation Studio.
+    let mut variables = pou.blocks.iter().flat_map(|it| &it.vars);
+    holds(pou.extent) || body.iter().any(|it| holds(it.span)) || variables.any(|it| holds(it.span))
 }
 
 impl Checked {

@@ -54,6 +54,35 @@ pub enum DefinitionKind {
 }
 
 impl DefinitionKind {
+    /// Whether its declaration and its body say what the names in it mean.
+    pub(super) fn is_whole_for_its_names(self) -> bool {
+        match self {
+            Self::Program
+            | Self::FunctionBlock
+            | Self::Class
+            | Self::Interface
+            | Self::Function
+            | Self::Method
+            | Self::Property
+            | Self::Action
+            | Self::Test
+            | Self::Type
+            | Self::Structure
+            | Self::Union
+            | Self::Enumeration => true,
+            Self::Variable(_)
+            | Self::Constant
+            | Self::Member
+            | Self::Enumerator
+            | Self::Label
+            | Self::Step
+            | Self::Configuration
+            | Self::Resource
+            | Self::Task
+            | Self::Instance => false,
+        }
+    }
+
     /// What it is called in Structured Text.
     pub const fn word(self) -> &'static str {
         match self {

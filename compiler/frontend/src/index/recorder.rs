@@ -1,5 +1,6 @@
 //! What is noted while a program is checked.
 
+use super::asked::{Asked, Stop};
 use super::definition::DefId;
 use crate::source::Span;
 use rustc_hash::FxHashMap;
@@ -61,8 +62,10 @@ pub(crate) struct Offered {
 /// several FUNCTIONs before one is chosen.
 #[derive(Debug, Default)]
 pub(crate) struct Recorder {
-    /// Where an editor asks for completion: the place of the name there.
-    asked: Option<(u16, u32)>,
+    pub asked: Asked,
+    /// The place around which alone bodies are checked.
+    pub around: Option<(u16, u32)>,
+    pub stop: Stop,
     offered: RefCell<Vec<Offered>>,
     uses: RefCell<FxHashMap<Span, Named>>,
     /// Where enumerators are declared, by their names in capitals.
@@ -72,14 +75,16 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder that also notes the candidates for the name at a place.
-    pub fn asked(at: Option<(u16, u32)>) -> Self {
-        Self { asked: at, ..Self::default() }
+    pub fn new(asked: Asked, stop: Stop) -> Self {
+        Self { asked, stop, ..Self::default() }
     }
 
     /// Whether completion is asked for at this name.
     pub fn is_asked(&self, name: Span) -> bool {
-        self.asked == Some((name.file, name.start))
+        match self.asked {
+            Asked::All | Asked::Around(..) => false,
+            Asked::Names(file, at, length) => file == name.file && (at..at + length).contains(&name.start),
+        }
     }
 
     pub fn offer(&self, it: Offered) {

@@ -4,13 +4,13 @@ use super::problems::shown;
 use crate::project::Analysis;
 use crate::uri;
 use gen_lsp_types::{CodeAction, CodeActionKind, Range, TextEdit, WorkspaceEdit};
-use staunch_frontend::Levels;
+use staunch_frontend::Severity;
 use std::collections::HashMap;
 
-pub fn actions(analysis: &Analysis, levels: &Levels, file: u16, within: Range) -> Vec<CodeAction> {
+pub fn actions(analysis: &Analysis, file: u16, within: Range) -> Vec<CodeAction> {
     let all = analysis.index.diagnostics.iter().filter(|it| it.span.file == file);
     let fixes = all.filter_map(|it| {
-        let it = levels.apply(it.clone())?;
+        let it = analysis.levels().apply(it.clone())?;
         let fix = it.fix.clone().filter(|fix| analysis.is_own(fix.span))?;
         let range = analysis.range(it.span);
         if range.end.line < within.start.line || within.end.line < range.start.line {
@@ -33,4 +33,10 @@ pub fn actions(analysis: &Analysis, levels: &Levels, file: u16, within: Range) -
         })
     });
     fixes.collect()
+}
+
+/// Whether there are errors on the lines of a range.
+pub fn has_errors(analysis: &Analysis, file: u16, within: Range) -> bool {
+    let own = analysis.index.diagnostics.iter().filter(|it| it.span.file == file && it.severity == Severity::Error);
+    own.map(|it| analysis.range(it.span)).any(|it| it.start.line <= within.end.line && within.start.line <= it.end.line)
 }

@@ -1,44 +1,121 @@
 //! Completion: a name is put where one is typed, and what the compiler could take for it is offered.
 
 use super::describe::describe;
+use super::symbols::holds;
 use crate::place::{Place, count};
-use crate::project::{Analysis, Documents, Project};
+use crate::project::{Analysis, Documents, Project, place};
 use gen_lsp_types::{
     CompletionItem, CompletionItemKind, Documentation, InsertTextFormat, MarkupContent, MarkupKind, Position,
 };
-use staunch_frontend::{DefinitionKind, Meaning, Offer, Source, format};
+use staunch_frontend::ast::VarKind;
+use staunch_frontend::{Definition, DefinitionKind, Meaning, Offer, Source, format};
+use staunch_runtime::Direction;
 use staunch_syntax::lex::{Kind, lex};
 use std::path::Path;
 
 /// What nobody calls anything.
 const HERE: &str = "staunch__here";
 
+/// So many names are offered whatever is typed already.
+const MANY: usize = 1000;
+
+/// The same where it would be a label: a statement may follow.
+const LABEL: &str = "staunch__here: ;";
+
 pub fn complete(project: &mut Project, documents: &Documents, path: &Path, position: Position) -> Vec<CompletionItem> {
-    let analysis = project.analysis(documents);
-    let Some(file) = analysis.file(path) else { return Vec::new() };
-    let source = analysis.source(file);
-    let document = source.file().text.clone();
+    let Some(file) = project.file(path) else { return Vec::new() };
+    let sources = project.sources(documents);
+    let source = sources.get(file);
+    let document = source.file().text.as_str();
     let at = crate::place::offset(source.file(), position);
-    let (start, typed) = word_before(&document, at);
-    if is_aside(source, analysis.place(path, position)) {
+    let (start, typed) = word_before(document, at);
+    if is_aside(source, place(&sources, file, position)) {
         return Vec::new();
     }
     let is_member = document[..start].trim_end().ends_with('.');
-    let offered = |text: &str, is_wanted: fn(&Offer) -> bool| -> Vec<_> {
-        let found = project.offers(documents, file, text, count(start));
-        let offers = found.index.offers.iter().filter(|it| it.name != HERE && is_wanted(it));
-        offers.map(|it| item(&found, it)).collect()
-    };
-    let mut items = offered(&with_name(&document, start, at, ";"), |_| true);
-    if may_be_label(&document, start) {
-        let mut labels = offered(&with_name(&document, start, at, ": ;"), |it| it.is_expected);
-        items.retain(|it| labels.iter().all(|label| label.label != it.label));
-        items.append(&mut labels);
-    }
+    let label = if may_be_label(document, start) { LABEL } else { "" };
+    let text = with_name(document, start, at, label);
+    let length = count(label.len()) + 1;
+    let Some(found) = project.offers(documents, file, &text, (count(start), length)) else { return Vec::new() };
+    let here = Here { file, at: count(start), is_member, is_connected: is_connected(document, start) };
+    let offers = &found.index.offers;
+    // An editor asks again where it would show more of them: where letters are deleted.
+    let is_near = |it: &&Offer| offers.len() < MANY || is_meant(&it.name, typed);
+    let offers = offers.iter().filter(|it| it.name != HERE && here.takes(&found, it)).filter(is_near);
+    let mut items: Vec<_> = offers.map(|it| item(&found, it, &here)).collect();
     if !is_member && !document[..start].trim_end().ends_with(['#', '%']) {
         items.extend(words(typed));
     }
     items
+}
+
+/// Where a name is typed.
+struct Here {
+    file: u16,
+    at: u32,
+    /// It is after a point.
+    is_member: bool,
+    /// `:=` or `=>` is after it.
+    is_connected: bool,
+}
+
+impl Here {
+    /// Whether an offer is one of what is here: what could only be visible is no member.
+    fn takes(&self, analysis: &Analysis, offer: &Offer) -> bool {
+        let is_visible_alone = match &offer.meaning {
+            Meaning::Function => true,
+            Meaning::Definition(id) => {
+                let definition = analysis.index.get(*id);
+                matches!(definition.kind, DefinitionKind::Variable(_)) && definition.owner.is_some()
+            }
+            _ => false,
+        };
+        offer.is_expected || !self.is_member || !is_visible_alone
+    }
+
+    fn is_in(&self, definition: &Definition) -> bool {
+        let extent = definition.extent;
+        extent.file == self.file && extent.start <= self.at && self.at <= extent.end
+    }
+
+    /// What connects a pin of a call that begins an argument here.
+    fn connection(&self, analysis: &Analysis, offer: &Offer) -> Option<&'static str> {
+        let by = |is_output: bool| Some(if is_output { "=>" } else { ":=" });
+        if self.is_member || self.is_connected || !offer.is_expected {
+            return None;
+        }
+        match &offer.meaning {
+            Meaning::Pin(block, at) => by(block.info().pins[*at].direction == Direction::Output),
+            Meaning::Parameter => by(false),
+            Meaning::Definition(id) => {
+                let definition = analysis.index.get(*id);
+                let is_own = definition.owner.is_none_or(|it| self.is_in(analysis.index.get(it)));
+                match definition.kind {
+                    DefinitionKind::Variable(VarKind::Output) if !is_own => by(true),
+                    DefinitionKind::Variable(VarKind::Input | VarKind::InOut) if !is_own => by(false),
+                    _ => None,
+                }
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether an argument that begins at a place is written with its sign.
+fn is_connected(text: &str, start: usize) -> bool {
+    let rest = text[start..].trim_start_matches(|it: char| it.is_alphanumeric() || it == '_').trim_start();
+    rest.starts_with(":=") || rest.starts_with("=>")
+}
+
+/// Whether what is typed may be short for a name: it begins a word of it, and the rest follows.
+fn is_meant(name: &str, typed: &str) -> bool {
+    let mut before = '_';
+    name.char_indices().any(|(at, letter)| {
+        let begins_word = !before.is_alphabetic() || before.is_lowercase() && letter.is_uppercase();
+        before = letter;
+        let first = typed.chars().next().is_none_or(|it| it.eq_ignore_ascii_case(&letter));
+        begins_word && first && holds(&name[at..], typed)
+    })
 }
 
 /// The part of a name that is before a place, and where it begins.
@@ -60,8 +137,8 @@ fn may_be_label(text: &str, start: usize) -> bool {
     begins_line && innermost().is_some_and(|it| is_case(it.start))
 }
 
-/// The document with a name in place of the one that is being typed, followed by what its statement lacks, with its end.
-fn with_name(text: &str, start: usize, at: u32, end_of_statement: &str) -> String {
+/// The document with a name in place of the one that is being typed, after a label perhaps, and before what its statement lacks.
+fn with_name(text: &str, start: usize, at: u32, label: &str) -> String {
     let end = usize::try_from(at).unwrap_or(usize::MAX).min(text.len());
     let rest = &text[end..];
     let tail = rest.find(|it: char| !(it.is_alphanumeric() || it == '_')).unwrap_or(rest.len());
@@ -70,8 +147,8 @@ fn with_name(text: &str, start: usize, at: u32, end_of_statement: &str) -> Strin
     // Brackets that are open are closed; a statement that is a name alone ends with its line.
     let before = text[..start].rsplit(['\n', ';']).next().unwrap_or_default();
     let depth = before.matches('(').count().saturating_sub(before.matches(')').count());
-    let close = if line.trim().is_empty() { ")".repeat(depth) + end_of_statement } else { String::new() };
-    format!("{}{HERE}{close}{rest}", &text[..start])
+    let close = if line.trim().is_empty() { ")".repeat(depth) + ";" } else { String::new() };
+    format!("{}{label}{HERE}{close}{rest}", &text[..start])
 }
 
 /// Whether a place is in a comment or a text.
@@ -89,9 +166,17 @@ fn is_aside(source: &Source, place: Option<Place>) -> bool {
     is_text || tokens.comments.iter().any(holds)
 }
 
-fn item(analysis: &Analysis, offer: &Offer) -> CompletionItem {
+fn item(analysis: &Analysis, offer: &Offer, here: &Here) -> CompletionItem {
     let about = describe(analysis, &offer.name, &offer.meaning);
-    let kind = kind(analysis, &offer.meaning);
+    let is_result = |it: &Definition| {
+        let has_result = it.ty.is_some();
+        has_result && matches!(it.kind, DefinitionKind::Function | DefinitionKind::Method) && here.is_in(it)
+    };
+    let kind = match &offer.meaning {
+        // In its own body, its name is its result.
+        Meaning::Definition(id) if is_result(analysis.index.get(*id)) => CompletionItemKind::Variable,
+        meaning => kind(analysis, meaning),
+    };
     let detail = about.as_ref().map(|it| it.code.lines().next().unwrap_or_default().to_owned());
     let documentation = about
         .filter(|it| !it.text.is_empty())
@@ -108,6 +193,7 @@ fn item(analysis: &Analysis, offer: &Offer) -> CompletionItem {
         detail,
         documentation,
         sort_text: Some(format!("{near}{}", offer.name)),
+        insert_text: here.connection(analysis, offer).map(|it| format!("{} {it} ", offer.name)),
         ..CompletionItem::default()
     }
 }
@@ -176,4 +262,18 @@ fn words(typed: &str) -> Vec<CompletionItem> {
         ..CompletionItem::default()
     });
     snippets.chain(plain).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_meant;
+
+    #[test]
+    fn words_of_a_name_are_typed_by_their_beginnings() {
+        for typed in ["", "m", "MV", "maxV", "value", "V"] {
+            assert!(is_meant("MaxValue", typed), "{typed}");
+        }
+        assert!(!is_meant("MaxValue", "alue"));
+        assert!(is_meant("int_to_real", "tr") && !is_meant("int_to_real", "o"));
+    }
 }

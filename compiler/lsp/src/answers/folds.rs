@@ -1,13 +1,11 @@
 //! What can be folded: from a word that opens a block to the one that ends it, and comments of several lines.
 
 use crate::place::count;
-use crate::project::Analysis;
 use gen_lsp_types::{FoldingRange, FoldingRangeKind};
-use staunch_frontend::format;
+use staunch_frontend::{Source, format};
 use staunch_syntax::lex::lex;
 
-pub fn folds(analysis: &Analysis, file: u16) -> Vec<FoldingRange> {
-    let source = analysis.source(file);
+pub fn folds(source: &Source, file: u16) -> Vec<FoldingRange> {
     let line = |offset: u32| source.line(offset).saturating_sub(1);
     let mut folds = Vec::new();
     for block in format::block_ranges(&source.text) {

@@ -4,14 +4,14 @@ use crate::project::Analysis;
 use gen_lsp_types::{
     Code, CodeDescription, Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DiagnosticTag, Message,
 };
-use staunch_frontend::{Code as Lint, Levels, Severity};
+use staunch_frontend::{Code as Lint, Severity};
 
 const PAGES: &str = "https://github.com/staunch-lang/staunch/blob/main/docs/diagnostics.md";
 
 /// What there is to say of a file.
-pub fn of(analysis: &Analysis, levels: &Levels, file: u16) -> Vec<Diagnostic> {
+pub fn of(analysis: &Analysis, file: u16) -> Vec<Diagnostic> {
     let all = analysis.index.diagnostics.iter().filter(|it| it.span.file == file);
-    all.filter_map(|it| levels.apply(it.clone())).map(|it| shown(analysis, &it)).collect()
+    all.filter_map(|it| analysis.levels().apply(it.clone())).map(|it| shown(analysis, &it)).collect()
 }
 
 pub fn shown(analysis: &Analysis, it: &staunch_frontend::Diagnostic) -> Diagnostic {

@@ -42,8 +42,13 @@ fn renamable(analysis: &Analysis, place: Place) -> Result<DefId, String> {
 ///
 /// # Errors
 /// Says why it cannot have that name: it is none, or something else would be meant by it.
-pub fn rename(project: &mut Project, documents: &Documents, place: Place, new: &str) -> Result<WorkspaceEdit, String> {
-    let analysis = project.analysis(documents);
+pub fn rename(
+    project: &mut Project,
+    analysis: &Analysis,
+    documents: &Documents,
+    place: Place,
+    new: &str,
+) -> Result<WorkspaceEdit, String> {
     let id = renamable(analysis, place)?;
     let old = analysis.name(id).to_owned();
     if !is_name(new) {

@@ -4,7 +4,9 @@ use crate::place::Place;
 use crate::project::Analysis;
 use gen_lsp_types::SelectionRange;
 use staunch_frontend::{Span, ast, parse_file};
+use staunch_syntax::lex::{Kind, lex};
 
+/// Of an outline of the file.
 pub fn around(analysis: &Analysis, place: Place) -> Option<SelectionRange> {
     let file = parse_file(&analysis.sources, place.file);
     let mut spans: Vec<Span> = Vec::new();
@@ -13,9 +15,9 @@ pub fn around(analysis: &Analysis, place: Place) -> Option<SelectionRange> {
             spans.push(it);
         }
     };
-    if let Some((name, _)) = analysis.at(place) {
-        add(name);
-    }
+    let tokens = lex(place.file, &analysis.source(place.file).text);
+    let words = tokens.kinds.iter().zip(&tokens.places).filter(|it| *it.0 == Kind::Name);
+    words.for_each(|(_, (start, end))| add(Span { file: place.file, start: *start, end: *end }));
     for item in &file.items {
         let ast::Item::Pou(pou) = item else { continue };
         for pou in core::iter::once(pou).chain(&pou.routines) {

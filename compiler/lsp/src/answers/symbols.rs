@@ -49,7 +49,8 @@ pub fn workspace(analysis: &Analysis, query: &str) -> Vec<SymbolInformation> {
     shown.take(500).collect()
 }
 
-fn holds(name: &str, letters: &str) -> bool {
+/// Whether a name has letters in their order.
+pub fn holds(name: &str, letters: &str) -> bool {
     let mut rest = name.chars().map(|it| it.to_ascii_lowercase());
     letters.chars().map(|it| it.to_ascii_lowercase()).all(|wanted| rest.any(|it| it == wanted))
 }

@@ -1,11 +1,11 @@
-//! Each request with what answers it.
+//! Each request with what answers it, and what has to be known for that.
 
 use super::{Refused, Server};
 use crate::answers::{
-    actions, complete, folds, hierarchy, hints, layout, navigate, rename, select, signature, symbols, tokens,
+    actions, complete, dialects, folds, hierarchy, hints, layout, navigate, rename, select, signature, symbols, tokens,
 };
 use crate::place::Place;
-use crate::project::Analysis;
+use crate::project::{self, Analysis};
 use crate::uri;
 use gen_lsp_types::{
     CodeActionParams, DocumentDiagnosticReport, DocumentRangeFormattingParams, FullDocumentDiagnosticReport,
@@ -18,8 +18,26 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 type Answer = Result<Json, Refused>;
+
+/// Whether a request is answered when the program has been checked; else it is answered at once.
+pub(super) fn needs_check(method: &LspRequestMethod<'_>) -> bool {
+    use LspRequestMethod as Method;
+    matches!(
+        method,
+        Method::TextDocumentReferences
+            | Method::TextDocumentDocumentHighlight
+            | Method::CallHierarchyIncomingCalls
+            | Method::CallHierarchyOutgoingCalls
+            | Method::TextDocumentSemanticTokensFull
+            | Method::TextDocumentInlayHint
+            | Method::TextDocumentCodeAction
+            | Method::TextDocumentRename
+            | Method::TextDocumentDiagnostic
+    )
+}
 
 impl Server<'_> {
     pub(super) fn answer(&mut self, method: LspRequestMethod<'_>, params: Json) -> Answer {
@@ -53,29 +71,42 @@ impl Server<'_> {
                 self.of_item(&params, |it, place| Some(hierarchy::supertypes(it, place)))
             }
             Method::TypeHierarchySubtypes => self.of_item(&params, |it, place| Some(hierarchy::subtypes(it, place))),
-            Method::TextDocumentDocumentSymbol => self.file(&params, |it, file| Some(symbols::outline(it, file))),
-            Method::TextDocumentFoldingRange => self.file(&params, |it, file| Some(folds::folds(it, file))),
+            Method::TextDocumentDocumentSymbol => {
+                let (analysis, file) = self.outline(&params)?;
+                json(symbols::outline(&analysis, file))
+            }
+            Method::TextDocumentFoldingRange => {
+                let (path, project) = self.document(&params)?;
+                let project = &mut self.projects[project];
+                let sources = project.sources(&self.documents);
+                json(project.file(&path).map(|it| folds::folds(sources.get(it), it)))
+            }
+            Method::TextDocumentSelectionRange => {
+                let positions = read::<SelectionRangeParams>(params.clone())?.positions;
+                let (analysis, file) = self.outline(&params)?;
+                let around = |it: Position| select::around(&analysis, project::place(&analysis.sources, file, it)?);
+                json(positions.into_iter().map(around).collect::<Option<Vec<_>>>())
+            }
             Method::TextDocumentSemanticTokensFull => {
-                self.file(&params, |it, file| Some(SemanticTokens { result_id: None, data: tokens::tokens(it, file) }))
+                self.file(&params, |it, file| SemanticTokens { result_id: None, data: tokens::tokens(it, file) })
             }
             Method::TextDocumentInlayHint => {
                 let within = read::<InlayHintParams>(params.clone())?.range;
-                self.file(&params, |it, file| Some(hints::hints(it, file, within)))
+                self.file(&params, |it, file| hints::hints(it, file, within))
             }
             Method::TextDocumentCodeAction => {
                 let within = read::<CodeActionParams>(params.clone())?.range;
                 let (path, project) = self.document(&params)?;
-                let levels = self.projects[project].unit.levels.clone();
-                let analysis = self.projects[project].analysis(&self.documents);
-                let file = analysis.file(&path);
-                json(file.map(|it| actions::actions(analysis, &levels, it, within)))
-            }
-            Method::TextDocumentSelectionRange => {
-                let positions = read::<SelectionRangeParams>(params.clone())?.positions;
-                let (path, project) = self.document(&params)?;
-                let analysis = self.projects[project].analysis(&self.documents);
-                let around = |it: Position| select::around(analysis, analysis.place(&path, it)?);
-                json(positions.into_iter().map(around).collect::<Option<Vec<_>>>())
+                let analysis = self.whole(project);
+                let project = &self.projects[project];
+                let Some(file) = project.file(&path) else { return Ok(Json::Null) };
+                let mut found = actions::actions(&analysis, file, within);
+                if let Some(choice) = project.unit.choice.as_ref().filter(|it| it.has_settings || self.can_create)
+                    && actions::has_errors(&analysis, file, within)
+                {
+                    found.extend(project.dialects.iter().map(|it| dialects::choose(choice, *it)));
+                }
+                json(found)
             }
             Method::TextDocumentCompletion => {
                 let position = read::<TextDocumentPositionParams>(params.clone())?.position;
@@ -83,20 +114,20 @@ impl Server<'_> {
                 json(complete::complete(&mut self.projects[project], &self.documents, &path, position))
             }
             Method::TextDocumentPrepareRename => {
+                let position = read::<TextDocumentPositionParams>(params.clone())?.position;
                 let (path, project) = self.document(&params)?;
-                let position = read::<TextDocumentPositionParams>(params)?.position;
-                let analysis = self.projects[project].analysis(&self.documents);
-                let place = analysis.place(&path, position).ok_or_else(|| "there is no name here".to_owned())?;
-                json(rename::prepare(analysis, place)?)
+                let found = self.near(project, &path, position);
+                let (analysis, place) = found.ok_or_else(|| "there is no name here".to_owned())?;
+                json(rename::prepare(&analysis, place)?)
             }
             Method::TextDocumentRename => {
                 let (path, project) = self.document(&params)?;
                 let params: RenameParams = read(params)?;
-                let project = &mut self.projects[project];
                 let position = params.text_document_position_params.position;
-                let place = project.analysis(&self.documents).place(&path, position);
-                let place = place.ok_or_else(|| "there is no name here".to_owned())?;
-                json(rename::rename(project, &self.documents, place, &params.new_name)?)
+                let found = self.near(project, &path, position);
+                let (analysis, place) = found.ok_or_else(|| "there is no name here".to_owned())?;
+                let project = &mut self.projects[project];
+                json(rename::rename(project, &analysis, &self.documents, place, &params.new_name)?)
             }
             Method::TextDocumentFormatting => {
                 let (path, project) = self.document(&params)?;
@@ -123,30 +154,55 @@ impl Server<'_> {
             }
             Method::WorkspaceSymbol => {
                 let query = read::<WorkspaceSymbolParams>(params)?.query;
-                let documents = &self.documents;
-                let all = self.projects.iter_mut().flat_map(|it| symbols::workspace(it.analysis(documents), &query));
+                let all = (0..self.projects.len()).flat_map(|it| {
+                    let analysis = self.declared(it);
+                    symbols::workspace(&analysis, &query)
+                });
                 json(all.collect::<Vec<_>>())
             }
             other => Err(Refused::new(ErrorCode::MethodNotFound, format!("{other} is not supported"))),
         }
     }
 
-    fn path(&self, params: &Json) -> Result<PathBuf, Refused> {
-        let document: TextDocumentIdentifier = read(params["textDocument"].clone())?;
+    /// The file that a request is about.
+    pub(super) fn path(&self, params: &Json) -> Result<PathBuf, Refused> {
+        // An item of a hierarchy is what an earlier answer named.
+        let document = if params["item"].is_object() { &params["item"] } else { &params["textDocument"] };
+        let document: TextDocumentIdentifier = read(document.clone())?;
         path(&document.uri)
     }
 
-    /// The file that a request is about, and its project.
+    /// The same, and its project.
     fn document(&mut self, params: &Json) -> Result<(PathBuf, usize), Refused> {
         let path = self.path(params)?;
         let project = self.project_of(&path)?;
         Ok((path, project))
     }
 
-    fn file<T: Serialize>(&mut self, params: &Json, answer: impl FnOnce(&Analysis, u16) -> Option<T>) -> Answer {
+    /// What all files of a project declare.
+    fn declared(&mut self, project: usize) -> Arc<Analysis> {
+        let project = &mut self.projects[project];
+        if let Some(known) = project.known() {
+            return Arc::clone(known);
+        }
+        let sources = project.sources(&self.documents);
+        let files = 0..crate::place::count(sources.files().len()).try_into().unwrap_or(u16::MAX);
+        Arc::new(Analysis::outline(&project.unit, sources, files))
+    }
+
+    /// What a file declares, and its number.
+    fn outline(&mut self, params: &Json) -> Result<(Analysis, u16), Refused> {
         let (path, project) = self.document(params)?;
-        let analysis = self.projects[project].analysis(&self.documents);
-        json(analysis.file(&path).and_then(|it| answer(analysis, it)))
+        let project = &mut self.projects[project];
+        let file = project.file(&path).ok_or_else(|| format!("{} is not a source", path.display()))?;
+        let sources = project.sources(&self.documents);
+        Ok((Analysis::outline(&project.unit, sources, file..file + 1), file))
+    }
+
+    fn file<T: Serialize>(&mut self, params: &Json, answer: impl FnOnce(&Analysis, u16) -> T) -> Answer {
+        let (path, project) = self.document(params)?;
+        let analysis = self.whole(project);
+        json(self.projects[project].file(&path).map(|it| answer(&analysis, it)))
     }
 
     fn at<T: Serialize>(&mut self, params: Json, answer: impl FnOnce(&Analysis, Place) -> Option<T>) -> Answer {
@@ -157,10 +213,8 @@ impl Server<'_> {
 
     /// The same for what an earlier answer named.
     fn of_item<T: Serialize>(&mut self, params: &Json, answer: impl FnOnce(&Analysis, Place) -> Option<T>) -> Answer {
-        let item = &params["item"];
-        let uri: Uri = read(item["uri"].clone())?;
-        let position: Position = read(item["selectionRange"]["start"].clone())?;
-        self.at_position(&path(&uri)?, position, answer)
+        let position: Position = read(params["item"]["selectionRange"]["start"].clone())?;
+        self.at_position(&self.path(params)?, position, answer)
     }
 
     fn at_position<T: Serialize>(
@@ -170,8 +224,15 @@ impl Server<'_> {
         answer: impl FnOnce(&Analysis, Place) -> Option<T>,
     ) -> Answer {
         let project = self.project_of(path)?;
-        let analysis = self.projects[project].analysis(&self.documents);
-        json(analysis.place(path, position).and_then(|it| answer(analysis, it)))
+        json(self.near(project, path, position).and_then(|(analysis, place)| answer(&analysis, place)))
+    }
+
+    /// A place with what is known of the names around it.
+    fn near(&mut self, project: usize, path: &Path, position: Position) -> Option<(Arc<Analysis>, Place)> {
+        let project = &mut self.projects[project];
+        let sources = project.sources(&self.documents);
+        let place = project::place(&sources, project.file(path)?, position)?;
+        Some((project.near(&self.documents, place), place))
     }
 }
 

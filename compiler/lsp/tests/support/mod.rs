@@ -1,10 +1,13 @@
 //! An editor in a test: it opens documents, types, and asks.
 #![allow(dead_code, reason = "each test takes a part of it")]
 
+#[allow(dead_code, reason = "each test takes a part of it")]
+pub mod programs;
+
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value as Json, json};
 use staunch_frontend::{Dialect, Options, Source, Sources, format::Style};
-use staunch_lsp::{Host, Unit, serve};
+use staunch_lsp::{Choice, Host, Unit, serve};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -13,6 +16,8 @@ use std::time::Duration;
 pub struct Folder {
     pub files: Vec<(&'static str, String)>,
     pub dialect: Dialect,
+    /// Where the dialect may be another one.
+    pub choice: Option<Choice>,
 }
 
 pub const ROOT: &str = "/plc";
@@ -32,7 +37,14 @@ impl Host for Folder {
             paths.push(path.to_owned());
         }
         let options = Options { dialect: self.dialect, ..Options::default() };
-        Ok(Unit { sources, paths, options, levels: Default::default(), layout: Style::default() })
+        Ok(Unit {
+            sources,
+            paths,
+            options,
+            levels: Default::default(),
+            layout: Style::default(),
+            choice: self.choice.clone(),
+        })
     }
 }
 
@@ -48,15 +60,20 @@ pub struct Editor {
 impl Editor {
     /// With `|` in a text as the place that [`at`] finds.
     pub fn open(dialect: Dialect, files: &[(&'static str, &str)]) -> Self {
+        Self::open_with(dialect, files, None)
+    }
+
+    pub fn open_with(dialect: Dialect, files: &[(&'static str, &str)], choice: Option<Choice>) -> Self {
         let (server, connection) = Connection::memory();
         let files: Vec<_> = files.iter().map(|(name, text)| (*name, (*text).to_owned())).collect();
-        let folder = Folder { files: files.clone(), dialect };
+        let folder = Folder { files: files.clone(), dialect, choice };
         let server = std::thread::Builder::new()
             .stack_size(64 << 20)
             .spawn(move || serve(&server, &folder))
             .expect("a thread for the server");
         let mut editor = Self { connection, server: Some(server), next: 0, version: 1, said: Vec::new() };
-        let capabilities = editor.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
+        let capabilities =
+            editor.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": capabilities() }));
         assert_eq!(capabilities["capabilities"]["hoverProvider"], json!(true));
         editor.tell("initialized", json!({}));
         for (name, text) in files {
@@ -151,6 +168,11 @@ impl Editor {
         let server = self.server.take().expect("it runs");
         server.join().expect("no panic").expect("it ended as it was told to");
     }
+}
+
+/// Of an editor that makes files.
+fn capabilities() -> Json {
+    json!({ "workspace": { "workspaceEdit": { "documentChanges": true, "resourceOperations": ["create"] } } })
 }
 
 pub fn uri(name: &str) -> String {
