@@ -24,6 +24,7 @@ mod value;
 
 mod column;
 mod expected;
+mod force;
 mod messages;
 mod minor;
 mod replace;
@@ -31,7 +32,6 @@ mod retain;
 mod schedule;
 mod start;
 mod stimulus;
-mod force;
 mod trace;
 
 mod attachments;

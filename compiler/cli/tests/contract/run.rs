@@ -135,10 +135,7 @@ fn a_forced_variable_has_its_value_in_each_scan() {
         );
         let forced = folder.staunch(&format!("{run} --force n=7 --force m[1]=-1 --force=s=="));
         has(&forced.err, &["note: `n`, `m[1]`, `s` are forced\n"]);
-        assert_eq!(
-            forced.out(0),
-            "scan,time_ms,up,n,m[0],m[1],s\n1,0,TRUE,7,7,-1,=\n2,10,FALSE,7,7,-1,=\n"
-        );
+        assert_eq!(forced.out(0), "scan,time_ms,up,n,m[0],m[1],s\n1,0,TRUE,7,7,-1,=\n2,10,FALSE,7,7,-1,=\n");
     }
     let wrong = |force: &str| folder.staunch(&format!("run p.st --scans 1 --force {force}")).err(2);
     has(&wrong("nn=1"), &["--force: there is no variable `nn`; did you mean `n`?"]);

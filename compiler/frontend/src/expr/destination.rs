@@ -104,13 +104,7 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Assigns the value of an instruction to its last operand.
-    fn assign_value(
-        &mut self,
-        value: Value,
-        name: ast::Name<'s>,
-        given: &[&ast::Expr<'s>],
-        span: Span,
-    ) -> Option<()> {
+    fn assign_value(&mut self, value: Value, name: ast::Name<'s>, given: &[&ast::Expr<'s>], span: Span) -> Option<()> {
         let (target, operands) = given.split_last()?;
         let mut operands: Vec<ast::Expr<'s>> = operands.iter().map(|it| (*it).clone()).collect();
         let function = match value {
