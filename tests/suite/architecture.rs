@@ -42,6 +42,7 @@ const EDGES: &[(&str, &[&str])] = &[
             "staunch-syntax",
             "staunch-runtime",
             "rustc-hash",
+            "crossbeam-channel",
             "lsp-server",
             "gen-lsp-types",
             "serde",

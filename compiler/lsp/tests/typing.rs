@@ -22,7 +22,7 @@ const SESSIONS: [&str; 5] = ["nothing", "keys", "hover", "completion", "all"];
 const SESSION: &str = "STAUNCH_SESSION";
 const KEYS: u64 = 2;
 /// Of some fifty lines each.
-const STATIONS: usize = 20;
+const STATIONS: usize = 40;
 const PER_FILE: usize = 4;
 
 #[test]

@@ -3,6 +3,7 @@
 //! answered with what is written for it.
 
 use super::checker::Checker;
+use crate::index::recorder::Named;
 use crate::names::{Entry, Found, Meaning, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use ast::{ArgumentKind, ExprKind as Ast, LiteralValue};
@@ -173,6 +174,9 @@ impl<'s> Checker<'_, 's> {
             Ast::Name(name) => ORDERS.iter().position(|it| it.eq_ignore_ascii_case(name.text)),
             _ => None,
         };
+        if named.is_some() {
+            self.decl.log.note(written.span, || Named::Word);
+        }
         let order = named.and_then(|it| u64::try_from(it).ok()).or_else(|| number(written).filter(|it| *it < 3));
         if order.is_none() {
             let text = self.decl.log.sources.text(written.span);

@@ -27,7 +27,8 @@ impl<'s> Declarations<'s> {
         let marked = Marked::new(self);
         let mut found = Vec::new();
         for (structure, field, path) in roots {
-            let it = &self.program.structure(structure).fields[field.index()];
+            // A program with mistakes may lack some.
+            let Some(it) = self.program.structure(structure).fields.get(field.index()) else { continue };
             let value = if marked.is_path(structure, it) {
                 // Of the PROGRAM itself.
                 let around = path.rsplit_once('.').map_or(path.as_str(), |it| it.0);
