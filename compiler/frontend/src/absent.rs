@@ -28,22 +28,87 @@ pub(crate) fn deduplicate_missing(diagnostics: Vec<Diagnostic>, sources: &Source
     kept
 }
 
-fn named_once(first: &Diagnostic, absent: &[&str], names: &[&str]) -> Diagnostic {
-    let quoted = |names: &[&str]| names.iter().map(|it| format!("`{it}`")).collect::<Vec<_>>().join(", ");
-    let (what, their) = match absent {
-        [_] => ("a library that is", "its source"),
-        _ => ("libraries that are", "their sources"),
-    };
-    let shown = quoted(&names[..names.len().min(SHOWN)]);
+/// Where a file has a USING of a namespace that is not there, unknown names of the file may be in it: they are told with it, once.
+pub(crate) fn of_used_namespaces(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let used: Vec<(u16, String)> = diagnostics.iter().filter_map(used_namespace).collect();
+    if used.is_empty() {
+        return diagnostics;
+    }
+    // Several in a file: any of them may have the name.
+    let space = |file: u16| used.iter().find(|it| it.0 == file).map(|it| it.1.as_str());
+    let mut names: Vec<(&str, Vec<String>)> = Vec::new();
+    let mut kept = Vec::with_capacity(diagnostics.len());
+    for it in diagnostics {
+        let Some((space, name)) = space(it.span.file).zip(may_be_used(&it)) else {
+            kept.push(it);
+            continue;
+        };
+        let at = names.iter().position(|it| it.0 == space).unwrap_or_else(|| {
+            names.push((space, Vec::new()));
+            names.len() - 1
+        });
+        if !names[at].1.iter().any(|it| it.eq_ignore_ascii_case(name)) {
+            names[at].1.push(name.to_owned());
+        }
+    }
+    for (space, names) in names {
+        let first = kept.iter_mut().find(|it| used_namespace(it).is_some_and(|it| it.1 == space));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        if let Some(first) = first {
+            first.notes.push(format!("unknown names that may be in it: {}", listed(&names)));
+            let help =
+                "add the sources of its package, or declarations of what it holds, to staunch.toml: `libraries = […]`";
+            first.help = first.help.take().or_else(|| Some(help.to_owned()));
+        }
+    }
+    kept
+}
+
+/// The namespace of a USING that is not there, with its file.
+fn used_namespace(it: &Diagnostic) -> Option<(u16, String)> {
+    let Some(Subject::Missing { kind: Missing::Used, name }) = &it.subject else { return None };
+    Some((it.span.file, name.clone()))
+}
+
+/// The unknown name, if a namespace could have it.
+fn may_be_used(it: &Diagnostic) -> Option<&str> {
+    use Missing::{Callable, FunctionBlock, Interface, Owner, Type};
+    match it.subject.as_ref().filter(|_| it.fix.is_none())? {
+        Subject::Missing { kind: Owner | Type | FunctionBlock | Interface | Callable, name }
+        | Subject::Elsewhere { name } => Some(name),
+        Subject::Missing { .. }
+        | Subject::Unavailable { .. }
+        | Subject::Beyond(_)
+        | Subject::Mismatch(..)
+        | Subject::Unclosed { .. } => None,
+    }
+}
+
+fn listed(names: &[&str]) -> String {
+    let quoted: Vec<_> = names.iter().take(SHOWN).map(|it| format!("`{it}`")).collect();
     let more = match names.len().saturating_sub(SHOWN) {
         0 => String::new(),
         more => format!(", and {more} more"),
     };
+    format!("{}{more}", quoted.join(", "))
+}
+
+fn named_once(first: &Diagnostic, absent: &[&str], names: &[&str]) -> Diagnostic {
+    let (what, their) = match absent {
+        [_] => ("a library that is", "its source"),
+        _ => ("libraries that are", "their sources"),
+    };
+    let shown = listed(names);
+    let libraries: Vec<_> = absent.iter().map(|it| format!("`{it}`")).collect();
     let paths: Vec<_> = absent.iter().map(|it| format!("\"…/{it}.plcproj\"")).collect();
-    Diagnostic::new(Code::E0102, first.span, format!("the project refers to {what} not available: {}", quoted(absent)))
-        .label("the first unknown name")
-        .note(format!("unknown: {shown}{more}"))
-        .help(format!("add {their} to staunch.toml: `libraries = [{}]`", paths.join(", ")))
+    Diagnostic::new(
+        Code::E0102,
+        first.span,
+        format!("the project refers to {what} not available: {}", libraries.join(", ")),
+    )
+    .label("the first unknown name")
+    .note(format!("unknown: {shown}"))
+    .help(format!("add {their} to staunch.toml: `libraries = [{}]`", paths.join(", ")))
 }
 
 /// The libraries of the references that are neither bundled nor among the sources.
@@ -75,6 +140,7 @@ fn unknown(it: &Diagnostic) -> Option<&str> {
         | Missing::FunctionBlock
         | Missing::Interface
         | Missing::Namespace
+        | Missing::Used
         | Missing::Callable => true,
         Missing::Enumeration
         | Missing::Library

@@ -516,7 +516,8 @@ fn finish(
         diagnostics.extend(unassigned);
     }
     diagnostics.sort_by_key(|it| (it.span.file, it.span.start, it.span.end, it.code));
-    let diagnostics = said_once::said_once(absent::deduplicate_missing(diagnostics, sources), units);
+    let diagnostics =
+        said_once::said_once(absent::of_used_namespaces(absent::deduplicate_missing(diagnostics, sources)), units);
     if let (Some(span), false) = (left_out, rejected) {
         unreachable!("checked program: `{}` was left out without a word", sources.text(span));
     }

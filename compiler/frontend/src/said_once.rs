@@ -72,7 +72,9 @@ fn named(it: &Diagnostic) -> Option<Named> {
     let (kind, name) = match it.subject.as_ref()? {
         Subject::Missing { kind, name } => (*kind, name),
         Subject::Unavailable { name } => return Some((Sought::Declared, name.to_ascii_uppercase())),
-        Subject::Beyond(_) | Subject::Mismatch(..) | Subject::Unclosed { .. } => return None,
+        Subject::Elsewhere { .. } | Subject::Beyond(_) | Subject::Mismatch(..) | Subject::Unclosed { .. } => {
+            return None;
+        }
     };
     let sought = match kind {
         // Who takes a similar name's place corrects each use.
@@ -80,7 +82,7 @@ fn named(it: &Diagnostic) -> Option<Named> {
         Missing::Variable => Sought::Variable,
         Missing::Owner => Sought::Owner,
         Missing::Inside | Missing::InFull => Sought::Inside,
-        Missing::Namespace | Missing::Library => Sought::Namespace,
+        Missing::Namespace | Missing::Used | Missing::Library => Sought::Namespace,
         Missing::Type | Missing::Enumeration | Missing::FunctionBlock | Missing::Interface | Missing::Callable => {
             Sought::Declared
         }

@@ -174,6 +174,7 @@ const fn code_of(kind: Missing) -> Code {
         | Missing::FunctionBlock
         | Missing::Interface
         | Missing::Namespace
+        | Missing::Used
         | Missing::Library
         | Missing::InFull
         | Missing::Inside => Code::E0102,

@@ -253,7 +253,7 @@ impl<'s> Declarations<'s> {
             let error = Diagnostic::unavailable(&full, first.span.to(last.span), &format!("`{full}`"));
             return self.report(error.help(help));
         }
-        let error = Diagnostic::missing(Missing::Namespace, &full, first.span.to(last.span))
+        let error = Diagnostic::missing(Missing::Used, &full, first.span.to(last.span))
             .label("no file of the program declares it");
         let near = crate::spelling::nearest(&full, self.names.namespaces()).map(str::to_owned);
         self.report(match near {

@@ -481,6 +481,7 @@ impl<'s> Declarations<'s> {
             let system = dialect.name().to_ascii_uppercase();
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is in {system}'s library", name.text))
+                    .about(Subject::Elsewhere { name: name.text.to_owned() })
                     .label("this file's dialect does not have this type")
                     .help(dialect.how_to_choose()),
             );

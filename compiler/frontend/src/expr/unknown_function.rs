@@ -3,7 +3,7 @@
 use super::checker::Checker;
 use super::unresolved::block_of_another_dialect;
 use super::{logix_operands, test_words};
-use crate::diagnostic::Missing;
+use crate::diagnostic::{Missing, Subject};
 use crate::dialect::{Dialect, missing};
 use crate::names::{functions, is_instruction};
 use crate::prelude;
@@ -159,6 +159,7 @@ fn of_another_dialect(name: ast::Name<'_>) -> Option<Diagnostic> {
     };
     let error =
         Diagnostic::new(Code::E0307, name.span, message).label("this file's dialect does not have this function");
+    let error = if is_library { error.about(Subject::Elsewhere { name: name.text.to_owned() }) } else { error };
     let rounds = !is_library && name.text.eq_ignore_ascii_case("ROUND");
     Some(match rounds {
         true => error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one"),

@@ -9,6 +9,8 @@ pub enum Subject {
     Missing { kind: Missing, name: String },
     /// Another system has it under the name, and it cannot be compiled yet.
     Unavailable { name: String },
+    /// The library of another dialect has it.
+    Elsewhere { name: String },
     /// A number that the type does not hold.
     Beyond(Elementary),
     /// Two types of which neither becomes the other here.
@@ -29,6 +31,8 @@ pub enum Missing {
     FunctionBlock,
     Interface,
     Namespace,
+    /// A namespace that a USING names: what is unknown in the file may be in it.
+    Used,
     /// A library that is known by its name, and not bundled.
     Library,
     /// A FUNCTION, or an instance that is called.
@@ -51,7 +55,7 @@ impl Missing {
             Self::Enumeration => format!("there is no enumeration `{name}`"),
             Self::FunctionBlock => format!("there is no FUNCTION_BLOCK `{name}`"),
             Self::Interface => format!("there is no INTERFACE `{name}`"),
-            Self::Namespace => format!("there is no namespace `{name}`"),
+            Self::Namespace | Self::Used => format!("there is no namespace `{name}`"),
             Self::Library => format!("the library `{name}` is not available"),
             Self::Callable => format!("there is no function or instance `{name}`"),
             Self::InFull | Self::Inside => format!("there is no `{name}`"),

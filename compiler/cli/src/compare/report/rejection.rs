@@ -104,7 +104,13 @@ fn widths(error: &Diagnostic) -> bool {
     match error.subject {
         Some(Subject::Beyond(ty)) => is_whole(ty),
         Some(Subject::Mismatch(a, b)) => is_whole(a) && is_whole(b),
-        Some(Subject::Missing { .. } | Subject::Unavailable { .. } | Subject::Unclosed { .. }) | None => false,
+        Some(
+            Subject::Missing { .. }
+            | Subject::Unavailable { .. }
+            | Subject::Elsewhere { .. }
+            | Subject::Unclosed { .. },
+        )
+        | None => false,
     }
 }
 
