@@ -74,8 +74,11 @@ fn used_namespace(it: &Diagnostic) -> Option<(u16, String)> {
 fn may_be_used(it: &Diagnostic) -> Option<&str> {
     use Missing::{Callable, FunctionBlock, Interface, Owner, Type};
     match it.subject.as_ref().filter(|_| it.fix.is_none())? {
-        Subject::Missing { kind: Owner | Type | FunctionBlock | Interface | Callable, name }
-        | Subject::Elsewhere { name } => Some(name),
+        // Where help says what is meant, that is a mistake of its own.
+        Subject::Missing { kind: Owner | Type | FunctionBlock | Interface | Callable, name } if it.help.is_none() => {
+            Some(name)
+        }
+        Subject::Elsewhere { name } => Some(name),
         Subject::Missing { .. }
         | Subject::Unavailable { .. }
         | Subject::Beyond(_)

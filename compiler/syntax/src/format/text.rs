@@ -76,6 +76,8 @@ fn says_the_same(a: &[Token<'_>], b: &[Token<'_>]) -> bool {
         a.kind == b.kind
             && match a.kind {
                 Kind::Comment | Kind::Pragma => lines(a.text).eq(lines(b.text)),
+                // It is not closed on its line, whose blanks at the end go.
+                Kind::OpenText => a.text.trim_end() == b.text.trim_end(),
                 Kind::Name => a.text.eq_ignore_ascii_case(b.text),
                 kind if kind.keyword().is_some() => true,
                 _ => a.text == b.text,
