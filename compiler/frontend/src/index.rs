@@ -66,8 +66,8 @@ impl Index {
         Self { asked, stop, ..Self::default() }
     }
 
-    /// The place around which names are asked for, where that is in a POU or a type. What is elsewhere, in a CONFIGURATION say, the
-    /// whole program gives its meaning.
+    /// The place around which names are asked for, where that is in a POU or a type. Elsewhere, as in a CONFIGURATION, the
+    /// whole program is checked.
     pub(crate) fn around(&self) -> Option<(u16, u32)> {
         let (file, at) = self.asked.place()?;
         let holds = |it: &&Definition| it.extent.file == file && it.extent.start <= at && at <= it.extent.end;

@@ -361,7 +361,7 @@ fn report_unclosed(problem: Diagnostic, log: &mut Log<'_>) {
         return log.report(
             Diagnostic::new(Code::W0531, opened, "this unit ends with its file, as an object of CODESYS does")
                 .label("its end is not written")
-                .other(end, "if the file goes on in the original, a part is missing here")
+                .other(end, "if the original file continues, a part is missing here")
                 .help(problem.help.unwrap_or_default()),
         );
     }

@@ -432,7 +432,7 @@ fn ask_dialects(project: &mut Project, ended: &Sender<Found>) {
     if let (Some(ask), Some(path)) = (project.ask_dialects(), first) {
         let ended = ended.clone();
         let work = move || ended.send(Found::Dialects(path, ask()));
-        // Without a thread there is no advice.
+        // Without a thread, no advice is given.
         drop(thread::Builder::new().stack_size(STACK).spawn(work));
     }
 }

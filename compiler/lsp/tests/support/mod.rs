@@ -166,7 +166,7 @@ impl Editor {
         assert_eq!(self.ask("shutdown", Json::Null), Json::Null);
         self.tell("exit", Json::Null);
         let server = self.server.take().expect("it runs");
-        server.join().expect("no panic").expect("it ended as it was told to");
+        server.join().expect("no panic").expect("it ended when it was asked to");
     }
 }
 
