@@ -6,6 +6,7 @@ mod added;
 mod chart;
 mod declared;
 mod enabled;
+mod in_threads;
 mod index;
 mod said_once;
 mod testing;
@@ -376,24 +377,53 @@ fn report_reserved(span: Span, log: &mut Log<'_>) {
     }
 }
 
+/// From so many bytes on, files are parsed on several threads.
+const MANY_BYTES: usize = 128 << 10;
+
+/// What parsing a file gave: its tree, and what is reported of it.
+type Parsed<'s> = (ast::File<'s>, Vec<Diagnostic>);
+
+/// Parses each file that is to be; `None` for the others.
+fn parse_each(sources: &Sources) -> Vec<Option<Parsed<'_>>> {
+    let files = sources.files();
+    let parse = |at: usize| {
+        let (source, number) = (&files[at], u16::try_from(at).unwrap_or(u16::MAX));
+        let is_parsed = !source.is_expression() && !is_incomplete(source);
+        is_parsed.then(|| {
+            let mut found = Vec::new();
+            let file = parse::parse_with(number, &source.text, sources.defined(source), Known::Later, &mut found);
+            (file, found)
+        })
+    };
+    match files.iter().map(|it| it.text.len()).sum::<usize>() < MANY_BYTES {
+        true => (0..files.len()).map(parse).collect(),
+        false => in_threads::each(files.len(), parse),
+    }
+}
+
+/// Where a file ends too early, what was read says little of the rest.
+fn is_incomplete(source: &Source) -> bool {
+    source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent))
+}
+
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
 fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Option<Vec<ast::File<'s>>> {
     let mut foreign = Vec::new();
     let mut files = Vec::new();
     let mut is_broken = false;
-    for (source, number) in sources.files().iter().zip(0u16..) {
+    for ((source, number), parsed) in sources.files().iter().zip(0u16..).zip(parse_each(sources)) {
         if source.is_expression() {
             files.push(ast::File::default());
             continue;
         }
         let before = diagnostics.len();
         diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
-        if source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent)) {
-            // What was read before the end says little of the rest.
+        let Some((file, found)) = parsed else {
             is_broken = true;
             continue;
-        }
-        files.push(parse::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
+        };
+        files.push(file);
+        diagnostics.extend(found);
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again, and JSON, which is one pragma.
         let unclosed = files.last_mut().map(|it| it.unclosed.as_mut_slice()).unwrap_or_default();
