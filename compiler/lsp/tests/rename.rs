@@ -13,7 +13,7 @@ use support::{Editor, edited, place, uri};
 fn each_name_of_the_examples_can_be_another() {
     let (count, refused) = renamed(files("st_examples"));
     assert!(count > 150, "{count} names");
-    assert!(refused.is_empty(), "{} of {count}: {:#?}", refused.len(), &refused[..refused.len().min(60)]);
+    assert!(refused.is_empty(), "{} of {count}: {:#?}", refused.len(), &refused[..refused.len().min(400)]);
 }
 
 /// Cases with names that cannot be others yet: a VAR_EXTERNAL CONSTANT that bounds an array is not joined to its global, the library
@@ -24,13 +24,13 @@ const NOT_YET: [&str; 3] = ["needs_of_each_kind", "own_vendor_names", "indexed_p
 fn each_name_of_many_cases_can_be_another() {
     // About each eleventh of those with one file, whatever others there are.
     let is_alone = |it: &PathBuf| !it.with_extension("2.st").exists();
-    let is_chosen = |it: &PathBuf| stem(it).bytes().map(u32::from).sum::<u32>() % 11 == 0;
+    let is_chosen = |it: &PathBuf| stem(it).bytes().map(u32::from).sum::<u32>() % 11 < 11;
     let is_known = |it: &PathBuf| NOT_YET.contains(&stem(it));
     let files: Vec<_> =
         files("tests/cases").into_iter().filter(|it| is_alone(it) && is_chosen(it) && !is_known(it)).collect();
     let (count, refused) = renamed(files);
     assert!(count > 300, "{count} names");
-    assert!(refused.is_empty(), "{} of {count}: {:#?}", refused.len(), &refused[..refused.len().min(60)]);
+    assert!(refused.is_empty(), "{} of {count}: {:#?}", refused.len(), &refused[..refused.len().min(400)]);
 }
 
 /// How many names were renamed, and those where the program is another one then.
@@ -56,9 +56,8 @@ fn program(text: &str, options: &Options) -> Option<String> {
     let compilation = compile(&sources, options);
     // What a condition asks for by name is not a name; what mocks and VAR_CONFIG name is not in the index, and a TEST has a title.
     let is_plain = !text.contains("{IF ")
-        && !["END_TEST", "NAME_OF", "VAR_CONFIG"].iter().any(|it| text.contains(it))
+        && !["NAME_OF"].iter().any(|it| text.contains(it))
         && !text.contains("to_string")
-        && !text.contains("\nACTIONS ")
         && !text.contains("{external")
         && !text.contains("attribute 'instance-path'");
     compilation.program.filter(|_| is_plain).map(|it| format!("{it:?}"))
