@@ -98,6 +98,7 @@ impl Index {
             // What the compiler writes out has the place of what it stands for. The library's names may be other ones.
             let text = sources.text(span);
             let is_written = match &target {
+                _ if text.is_empty() => false,
                 Named::Definition(it) => {
                     sources.get(it.file).is_bundled() || bare(text).eq_ignore_ascii_case(bare(sources.text(*it)))
                 }

@@ -363,6 +363,9 @@ impl<'s> Checker<'_, 's> {
         let dint = Type::Elementary(Elementary::Dint);
         let path = mocked.path().unwrap_or_default();
         let of_functions = if path.is_empty() { Vec::new() } else { self.decl.mocks_of(&path) };
+        if !of_functions.is_empty() {
+            self.decl.note_path(&path, &self.decl.lookup(&path, Sense::Callee));
+        }
         let mut counts = of_functions.into_iter().map(|it| Expr::load(it.calls, at));
         let mut total = match counts.next() {
             Some(first) => first,
@@ -426,6 +429,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         };
         let mocks = self.decl.mocks_of(&path);
+        self.decl.note_path(&path, &self.decl.lookup(&path, Sense::Callee));
         if mocks.is_empty() {
             let name = self.decl.log.sources.text(function.span).to_owned();
             self.report(

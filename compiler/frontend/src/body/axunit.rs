@@ -177,7 +177,10 @@ impl<'s> Checker<'_, 's> {
     fn exchangeable(&mut self, expr: &ast::Expr<'s>) -> Option<usize> {
         let path = exchange::names(expr, self.decl.log.sources).unwrap_or_default();
         let found = [Sense::Callee, Sense::Type].into_iter().find_map(|sense| match self.decl.lookup(&path, sense) {
-            Found::One(Meaning::Declared(Entry::Pou(slot))) => Some(slot),
+            found @ Found::One(Meaning::Declared(Entry::Pou(slot))) => {
+                self.decl.note_path(&path, &found);
+                Some(slot)
+            }
             Found::One(_) | Found::Several(_) | Found::Nothing => None,
         });
         if found.is_none() {

@@ -195,8 +195,9 @@ impl<'s> Declarations<'s> {
         let listed = listed.flat_map(|it| it.programs.iter().map(move |run| (it, run)));
         let instances: Vec<_> = listed.chain(default.iter().map(|it| (&direct, it))).collect();
         for ast::Binding { target, located } in bindings {
-            let found = instances.iter().find_map(|(it, run)| Some((within(target, it, run)?, run)));
-            if let Some((path, run)) = &found {
+            let found = instances.iter().find_map(|(it, run)| Some((within(target, it, run)?, it, run)));
+            if let Some((path, resource, run)) = &found {
+                self.note_bound(target, path, resource, run, &pous);
                 if self.report_called_and_bound(run, target) || self.lacks_address_and_value(target, located) {
                     continue;
                 }
@@ -239,6 +240,41 @@ impl<'s> Declarations<'s> {
                     .help("bind one of them, and read it where the other is needed"),
                 );
             }
+        }
+    }
+
+    /// Notes what the names of a VAR_CONFIG's path mean: a RESOURCE, an instance, and then variables.
+    fn note_bound(
+        &self,
+        target: &ast::Expr<'s>,
+        path: &ast::Expr<'s>,
+        resource: &ast::Resource<'s>,
+        run: &ast::ProgramInstance<'s>,
+        pous: &FxHashMap<Key<'s>, &ast::Pou<'s>>,
+    ) {
+        if self.log.index.is_none() {
+            return;
+        }
+        let mut part = path;
+        while let ast::ExprKind::Member(base, _) | ast::ExprKind::Index(base, _) = &part.kind {
+            if let ast::ExprKind::Member(_, name) = &part.kind
+                && let Some((_, Some(decl))) = declaration_of(part, run, pous)
+                && let Some(declared) = decl.names.iter().find(|it| Key(it.text) == Key(name.text))
+            {
+                self.log.note_declared(name.span, declared.span);
+            }
+            part = base;
+        }
+        // What stands for the instance in the path is written with the RESOURCE in the target.
+        let mut written = target;
+        while let ast::ExprKind::Member(base, _) | ast::ExprKind::Index(base, _) = &written.kind
+            && written.span != part.span
+        {
+            written = base;
+        }
+        let declared = [Some(run.name), resource.name].into_iter().flatten();
+        for (name, declared) in written.path().unwrap_or_default().iter().rev().zip(declared) {
+            self.log.note_declared(name.span, declared.span);
         }
     }
 

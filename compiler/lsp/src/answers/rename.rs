@@ -25,10 +25,11 @@ fn renamable(analysis: &Analysis, place: Place) -> Result<DefId, String> {
     if OF_THE_SYSTEM.iter().any(|it| it.eq_ignore_ascii_case(name)) {
         return Err(format!("`{name}` has its meaning by its name"));
     }
-    if !is_name(name) {
+    let definition = analysis.index.get(id);
+    // The title of a TEST is a text, and its parts are words.
+    if !is_name(name) || definition.kind == DefinitionKind::Test {
         return Err(format!("`{name}` is not a name that can be another"));
     }
-    let definition = analysis.index.get(id);
     if analysis.source(definition.name.file).is_assembled() && is_of_the_file(definition.kind) {
         return Err(format!("`{name}` is the name of an object of its file, too: rename it in the original system"));
     }
