@@ -1,9 +1,14 @@
 //! Programs of B&R's Automation Studio. Each is a folder: `PROGRAM _INIT`, `_CYCLIC` and `_EXIT` are its parts, and its variables are in
 //! files `.var`. It becomes a PROGRAM with the name of the folder. A library declares its functions in `.fun`, and their bodies are elsewhere.
 
+mod edges;
+mod scopes;
+
 use crate::Sources;
 use crate::added::STARTED_UP;
-use crate::ast::{File, Item, Pou, PouKind, Statement, VarBlock, VarKind};
+use crate::ast::{Expr, ExprKind, File, Item, Name, Pou, PouKind, Statement, TypeDecl, TypeKind, VarBlock, VarKind};
+use crate::dialect::{self, Dialect};
+use crate::names::functions;
 use crate::spelling::Key;
 use crate::start_up::once;
 use crate::testing::tree::variables;
@@ -14,9 +19,53 @@ const CYCLIC: &str = "_CYCLIC";
 const EXIT: &str = "_EXIT";
 
 /// Puts the parts of programs and functions together.
-pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) {
+pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
+    join(files, sources, dialect);
+    if !sources.is_of_automation_studio() {
+        return;
+    }
+    scopes::expand(files, sources);
+    let own = files.iter_mut().zip(sources.files()).filter(|it| !it.1.is_bundled());
+    for item in own.flat_map(|it| &mut it.0.items) {
+        match item {
+            Item::Pou(pou) => {
+                edges::expand(pou);
+                rename_this(pou);
+            }
+            Item::Types(types) => types.iter_mut().for_each(number_values),
+            Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => {}
+        }
+    }
+}
+
+/// Automation Studio has no THIS: a variable of a PROGRAM may be called so, and is called otherwise here.
+fn rename_this(pou: &mut Pou<'_>) {
+    const NAME: &str = "this_";
+    let is_it = |it: &Name<'_>| it.text.eq_ignore_ascii_case("THIS");
+    let declared = pou.blocks.iter_mut().flat_map(|it| &mut it.vars).flat_map(|it| &mut it.names);
+    let mut declared = declared.filter(|it| is_it(it)).peekable();
+    if pou.kind != PouKind::Program || declared.peek().is_none() {
+        return;
+    }
+    declared.for_each(|it| it.text = NAME);
+    let mut rename = |it: &mut Expr<'_>| match &mut it.kind {
+        ExprKind::Name(name) if is_it(name) => name.text = NAME,
+        _ => {}
+    };
+    edges::each_expr(&mut pou.body, &mut rename);
+    pou.routines.iter_mut().for_each(|it| edges::each_expr(&mut it.body, &mut rename));
+}
+
+/// An enumeration is a DINT: in the C that Automation Studio makes of a program it is an enumeration of C's, which takes 4 bytes.
+fn number_values(ty: &mut TypeDecl<'_>) {
+    if let TypeKind::Enum { base: base @ None, .. } = &mut ty.ty.kind {
+        *base = Some(Name { text: "DINT", span: ty.name.span });
+    }
+}
+
+fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
     let paths: Vec<&'s str> = sources.files().iter().map(|it| it.path.as_str()).collect();
-    join_functions(files, &paths);
+    join_functions(files, &paths, dialect);
     let folders: Vec<&'s str> = paths.iter().map(|it| folder_of(it)).collect();
     let mut programs: FxHashMap<&'s str, usize> = FxHashMap::default();
     for ((at, file), folder) in files.iter().enumerate().zip(&folders) {
@@ -27,8 +76,10 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) {
     for (folder, first) in programs {
         let mut parts: Vec<Pou<'s>> = Vec::new();
         let mut blocks: Vec<VarBlock<'s>> = Vec::new();
+        let mut actions: Vec<Pou<'s>> = Vec::new();
         for at in (0..files.len()).filter(|at| folders.get(*at) == Some(&folder)) {
             let is_list = has_extension(paths[at], "var");
+            actions.extend(std::mem::take(&mut files[at].apart).into_iter().map(|it| it.0));
             for item in std::mem::take(&mut files[at].items) {
                 match item {
                     Item::Globals(block) if is_list => blocks.push(VarBlock { kind: VarKind::Var, ..block }),
@@ -41,7 +92,11 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) {
                 }
             }
         }
-        files[first].items.extend(program(folder, parts, blocks).map(Item::Pou));
+        let program = program(folder, parts, blocks).map(|mut it| {
+            it.routines.append(&mut actions);
+            it
+        });
+        files[first].items.extend(program.map(Item::Pou));
     }
 }
 
@@ -67,7 +122,7 @@ fn program<'s>(folder: &'s str, parts: Vec<Pou<'s>>, blocks: Vec<VarBlock<'s>>) 
     parts.sort_by_key(|it| !it.0);
     let (_, first) = parts.first()?;
     let at = first.name.span;
-    let mut program = Pou::new(PouKind::Program, crate::ast::Name { text: name_of(folder), span: at }, first.span);
+    let mut program = Pou::new(PouKind::Program, Name { text: name_of(folder), span: at }, first.span);
     (program.extent, program.doc) = (first.extent, first.doc.clone());
     program.blocks = blocks;
     let (mut init, mut cyclic): (Vec<Statement<'s>>, Vec<Statement<'s>>) = (Vec::new(), Vec::new());
@@ -101,21 +156,28 @@ fn name_of(folder: &str) -> &str {
 }
 
 /// Gives the bodies of functions and function blocks the declarations in files `.fun`.
-fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str]) {
+fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str], dialect: Dialect) {
     let mut heads: FxHashMap<Key<'s>, Pou<'s>> = FxHashMap::default();
     let is_list = |at: usize| paths.get(at).is_some_and(|it| has_extension(it, "fun"));
     if !(0..files.len()).any(is_list) {
         return;
     }
     let bodies: Vec<Key<'s>> = (0..files.len()).filter(|at| !is_list(*at)).flat_map(|at| names(&files[at])).collect();
+    let mut stubs: Vec<Pou<'s>> = Vec::new();
     for at in (0..files.len()).filter(|at| is_list(*at)) {
         for item in std::mem::take(&mut files[at].items) {
             match item {
                 Item::Pou(pou) if bodies.contains(&Key(pou.name.text)) => {
                     heads.insert(Key(pou.name.text), pou);
                 }
+                Item::Pou(pou) if is_known(&pou, dialect) => {}
                 // Its body is not among the sources.
-                Item::Pou(pou) => files[at].items.push(Item::Pou(Pou { is_stub: true, ..pou })),
+                Item::Pou(pou) if stubs.iter().any(|it| is_the_same(it, &pou)) => {}
+                Item::Pou(pou) => {
+                    let pou = Pou { is_stub: true, ..pou };
+                    stubs.push(pou.clone());
+                    files[at].items.push(Item::Pou(pou));
+                }
                 item => files[at].items.push(item),
             }
         }
@@ -128,6 +190,40 @@ fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str]) {
             pou.doc = pou.doc.take().or(head.doc);
         }
     }
+}
+
+/// Whether a declaration without a body is of what is here without it: an operator, a standard function, or a standard block that has
+/// these parameters.
+fn is_known(pou: &Pou<'_>, dialect: Dialect) -> bool {
+    const OPERATORS: [&str; 7] = ["AND", "OR", "XOR", "NOT", "MOD", "ADR", "SIZEOF"];
+    let name = pou.name.text;
+    if pou.kind == PouKind::Function {
+        let is_edge = |it: &(&str, &str)| it.0.eq_ignore_ascii_case(name);
+        return OPERATORS.iter().any(|it| it.eq_ignore_ascii_case(name))
+            || crate::prelude::EDGES.iter().any(is_edge)
+            || functions::exists_in(name, dialect);
+    }
+    let Some(block) = dialect::bare_block(dialect, name) else { return false };
+    let has_pin = |wanted: &str| block.info().pins.iter().any(|it| it.name.eq_ignore_ascii_case(wanted));
+    let shown = pou.blocks.iter().filter(|it| it.kind != VarKind::Var);
+    shown.flat_map(|it| &it.vars).flat_map(|it| &it.names).all(|it| has_pin(it.text))
+}
+
+/// Whether two declarations without bodies are of one name and have the same parameters: RF_TRIG is in two libraries of Automation Studio's.
+fn is_the_same(one: &Pou<'_>, other: &Pou<'_>) -> bool {
+    let shown = |pou: &Pou<'_>| {
+        let blocks: Vec<_> = pou.blocks.iter().filter(|it| it.kind != VarKind::Var).map(|it| it.kind).collect();
+        blocks
+    };
+    let parameters = |pou: &Pou<'_>| {
+        let shown = pou.blocks.iter().filter(|it| it.kind != VarKind::Var);
+        let names = shown.flat_map(|it| &it.vars).flat_map(|it| &it.names);
+        names.map(|it| it.text.to_ascii_lowercase()).collect::<Vec<_>>()
+    };
+    Key(one.name.text) == Key(other.name.text)
+        && one.kind == other.kind
+        && shown(one) == shown(other)
+        && parameters(one) == parameters(other)
 }
 
 fn names<'s>(file: &File<'s>) -> Vec<Key<'s>> {

@@ -212,7 +212,7 @@ fn run_with(
 ) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
     log.index = index.as_ref().map(|it| Recorder::new(it.asked, it.stop.clone()));
-    let Some(files) = parse_all(sources, &mut log.diagnostics) else {
+    let Some(files) = parse_all(sources, options, &mut log.diagnostics) else {
         return Some(Compilation::rejected(log.diagnostics));
     };
     if let Some(index) = &mut index {
@@ -305,7 +305,8 @@ struct Trees<'s> {
 
 fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
     let sources = log.sources;
-    automation_studio::expand(&mut files, sources);
+    automation_studio::expand(&mut files, sources, log.options.dialect);
+    files.iter_mut().flat_map(|it| std::mem::take(&mut it.apart)).for_each(|it| log.report(it.1));
     let stubs = library::prepare(&mut files, sources);
     stubs.refused.iter().for_each(|it| log.report(library::c_code(*it)));
     let has_tests = testing::has_tests(&files);
@@ -377,10 +378,16 @@ fn report_reserved(span: Span, log: &mut Log<'_>) {
 }
 
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
-fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Option<Vec<ast::File<'s>>> {
+fn parse_all<'s>(
+    sources: &'s Sources,
+    options: &Options,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Vec<ast::File<'s>>> {
     let mut foreign = Vec::new();
     let mut files = Vec::new();
     let mut is_broken = false;
+    // No file there is of another system, whatever its comments look like.
+    let is_of_studio = sources.is_of_automation_studio();
     for (source, number) in sources.files().iter().zip(0u16..) {
         if source.is_expression() {
             files.push(ast::File::default());
@@ -393,13 +400,14 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
             is_broken = true;
             continue;
         }
-        files.push(parse::parse_with(number, &source.text, sources.defined(source), Known::Later, diagnostics));
+        let habits = options.habits(sources, source);
+        files.push(parse::parse_with(number, &source.text, habits, Known::Later, diagnostics));
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again, and JSON, which is one pragma.
         let unclosed = files.last_mut().map(|it| it.unclosed.as_mut_slice()).unwrap_or_default();
         unclosed.iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         let is_wrong = !unclosed.is_empty() || diagnostics[before..].iter().any(|it| it.severity == Severity::Error);
-        if !source.is_assembled() && (is_wrong || foreign::is_json(source)) {
+        if !source.is_assembled() && !is_of_studio && (is_wrong || foreign::is_json(source)) {
             foreign.extend(foreign::recognise(number, source));
         }
     }
@@ -414,12 +422,17 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
         diagnostics.retain(|it| it.code == Code::E0033 || !is_undecided(it.span.file));
         return None;
     }
-    decide_later(&mut files, sources, diagnostics);
+    decide_later(&mut files, sources, options, diagnostics);
     Some(files)
 }
 
 /// Reads the files once more whose conditions ask for what is declared.
-fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) {
+fn decide_later<'s>(
+    files: &mut [ast::File<'s>],
+    sources: &'s Sources,
+    options: &Options,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
     if files.iter().all(|it| it.undecided.is_empty()) {
         return;
     }
@@ -427,7 +440,7 @@ fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnosti
     for (file, number) in files.iter_mut().zip(0u16..).filter(|(it, _)| !it.undecided.is_empty()) {
         let source = sources.get(number);
         let read = |known, diagnostics: &mut Vec<Diagnostic>| {
-            parse::parse_with(number, &source.text, sources.defined(source), known, diagnostics)
+            parse::parse_with(number, &source.text, options.habits(sources, source), known, diagnostics)
         };
         let mut found = Vec::new();
         let first = std::mem::replace(file, read(Known::All(&known), &mut found));

@@ -13,7 +13,7 @@ pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
 pub use literal::{DECIMAL, Fault, date, duration, integer, real, string};
-pub use scan::Scanner;
+pub use scan::{Comments, Scanner};
 
 use crate::{
     ast::Name,
@@ -43,20 +43,50 @@ pub struct Tokens<'s> {
     pub c_code: Vec<Span>,
 }
 
-/// Reads a text of at most `u32::MAX` bytes.
-pub fn lex(file: u16, text: &str) -> Tokens<'_> {
-    lex_with(file, text, &[], Known::Never)
+/// What is known of a file before it is read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Habits<'s> {
+    /// What its project defines for conditional compilation.
+    pub defined: &'s [String],
+    pub comments: Comments,
+    /// Some words of the standard's that are names there.
+    pub names: &'static [Kind],
 }
 
-/// The same, where a project defines names for conditional compilation, and some is known of what is declared.
-pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Known<'_, 's>) -> Tokens<'s> {
+/// Dialects whose comments end at the first `*)`: MATIEC reads nested ones only by an option, which neither OpenPLC nor
+/// Beremiz gives it.
+const PLAIN: [&str; 1] = ["openplc"];
+
+impl Habits<'_> {
+    /// How comments end in a dialect.
+    pub fn comments_of(dialect: &str) -> Comments {
+        let is_plain = PLAIN.iter().any(|it| it.eq_ignore_ascii_case(dialect));
+        if is_plain { Comments::Plain } else { Comments::Nested }
+    }
+}
+
+/// Reads a text of at most `u32::MAX` bytes.
+pub fn lex(file: u16, text: &str) -> Tokens<'_> {
+    lex_with(file, text, Habits::default(), Known::Never)
+}
+
+/// The same, where something is known of the file, and of what is declared.
+pub fn lex_with<'s>(file: u16, text: &'s str, habits: Habits<'s>, known: Known<'_, 's>) -> Tokens<'s> {
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
-    let mut reading = Reading { file, text, tokens, named: Vec::new(), unknown: false, has_external: false };
+    let comments = habits.comments;
+    let mut reading = Reading { file, text, tokens, comments, named: Vec::new(), unknown: false, has_external: false };
     let mut scanner = Scanner::new(text);
+    scanner.end_comments(comments);
     while let Some(kind) = scanner.next() {
         let range = scanner.span();
+        if kind == Kind::Pragma
+            && let Some(dialect) = dialect_named(&text[range.clone()])
+        {
+            reading.comments = Habits::comments_of(dialect);
+            scanner.end_comments(reading.comments);
+        }
         reading.token(kind, (offset(range.start), offset(range.end)));
         if reading.tokens.diagnostics.len() >= MAX_REPORTS {
             reading.tokens.cut = true;
@@ -65,14 +95,23 @@ pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Know
     }
     let end = offset(text.len());
     reading.push(Kind::End, (end, end));
-    conditional::choose(&mut reading.tokens, defined, known);
+    conditional::choose(&mut reading.tokens, habits.defined, known);
     reading.tokens
+}
+
+/// The name in `{dialect 'openplc'}`.
+fn dialect_named(pragma: &str) -> Option<&str> {
+    let words = pragma.strip_prefix('{')?.strip_suffix('}')?.trim();
+    let (word, name) = words.split_at_checked("dialect".len())?;
+    let name = name.trim();
+    word.eq_ignore_ascii_case("dialect").then(|| name.trim_matches(['\'', '"']))
 }
 
 struct Reading<'s> {
     file: u16,
     text: &'s str,
     tokens: Tokens<'s>,
+    comments: Comments,
     /// Names with letters that names cannot have: each is reported once.
     named: Vec<&'s str>,
     /// The last token is a run of unknown characters.
@@ -112,10 +151,10 @@ impl<'s> Reading<'s> {
     fn comment(&mut self, place: (u32, u32)) {
         self.tokens.comments.push(place);
         let opening = self.slice(place);
-        if index(place.1) == self.text.len() && !comment::is_closed(opening) {
+        if index(place.1) == self.text.len() && !comment::is_closed(opening, self.comments) {
             let (open, close) = if opening.starts_with("(*") { ("(*", "*)") } else { ("/*", "*/") };
             let mut it = self.unclosed(place, 2, "the comment", open, close);
-            if open == "(*" {
+            if open == "(*" && self.comments == Comments::Nested {
                 it = it.note("comments nest: each `(*` needs its own `*)`");
             }
             self.tokens.diagnostics.push(it);
