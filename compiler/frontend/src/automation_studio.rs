@@ -2,11 +2,14 @@
 //! files `.var`. It becomes a PROGRAM with the name of the folder. A library declares its functions in `.fun`, and their bodies are elsewhere.
 
 mod edges;
+mod members;
 mod scopes;
 
 use crate::Sources;
 use crate::added::STARTED_UP;
-use crate::ast::{Expr, ExprKind, File, Item, Name, Pou, PouKind, Statement, TypeDecl, TypeKind, VarBlock, VarKind};
+use crate::ast::{
+    Expr, ExprKind, File, Item, Name, Pou, PouKind, Statement, TypeDecl, TypeKind, VarBlock, VarDecl, VarKind,
+};
 use crate::dialect::{self, Dialect};
 use crate::names::functions;
 use crate::spelling::Key;
@@ -20,11 +23,12 @@ const EXIT: &str = "_EXIT";
 
 /// Puts the parts of programs and functions together.
 pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
-    join(files, sources, dialect);
+    let shared = join(files, sources, dialect);
     if !sources.is_of_automation_studio() {
         return;
     }
-    scopes::expand(files, sources);
+    scopes::expand(files, sources, &shared);
+    members::expand(files, sources);
     let own = files.iter_mut().zip(sources.files()).filter(|it| !it.1.is_bundled());
     for item in own.flat_map(|it| &mut it.0.items) {
         match item {
@@ -63,7 +67,8 @@ fn number_values(ty: &mut TypeDecl<'_>) {
     }
 }
 
-fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
+/// Gives the files whose CONSTANTs are those of a program, and of the types of its folder.
+fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) -> Vec<usize> {
     let paths: Vec<&'s str> = sources.files().iter().map(|it| it.path.as_str()).collect();
     join_functions(files, &paths, dialect);
     let folders: Vec<&'s str> = paths.iter().map(|it| folder_of(it)).collect();
@@ -73,7 +78,10 @@ fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
             programs.entry(folder).or_insert(at);
         }
     }
+    let mut shared = Vec::new();
+    let lists = constants(files, &paths);
     for (folder, first) in programs {
+        let of_types = scopes::words_of_types(folder, sources);
         let mut parts: Vec<Pou<'s>> = Vec::new();
         let mut blocks: Vec<VarBlock<'s>> = Vec::new();
         let mut actions: Vec<Pou<'s>> = Vec::new();
@@ -82,7 +90,20 @@ fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
             actions.extend(std::mem::take(&mut files[at].apart).into_iter().map(|it| it.0));
             for item in std::mem::take(&mut files[at].items) {
                 match item {
-                    Item::Globals(block) if is_list => blocks.push(VarBlock { kind: VarKind::Var, ..block }),
+                    Item::Globals(mut block) if is_list => {
+                        let is_shared = |it: &VarDecl<'s>| {
+                            let is_it = |it: &Name<'s>| {
+                                of_types.contains(&Key(it.text)) && lists.get(&Key(it.text)) == Some(&1)
+                            };
+                            it.names.iter().all(is_it)
+                        };
+                        let (of_all, own) = std::mem::take(&mut block.vars).into_iter().partition(is_shared);
+                        blocks.push(VarBlock { kind: VarKind::Var, vars: own, ..block.clone() });
+                        if !Vec::is_empty(&of_all) {
+                            shared.push(at);
+                            files[at].items.push(Item::Globals(VarBlock { vars: of_all, ..block }));
+                        }
+                    }
                     item if part_of(&item).is_some() => {
                         if let Item::Pou(pou) = item {
                             parts.push(pou);
@@ -98,6 +119,21 @@ fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
         });
         files[first].items.extend(program.map(Item::Pou));
     }
+    shared
+}
+
+/// In how many places each CONSTANT is declared; what may change counts twice.
+fn constants<'s>(files: &[File<'s>], paths: &[&str]) -> FxHashMap<Key<'s>, usize> {
+    let mut found: FxHashMap<Key<'s>, usize> = FxHashMap::default();
+    let lists = files.iter().zip(paths).filter(|it| has_extension(it.1, "var"));
+    for item in lists.flat_map(|it| &it.0.items) {
+        let Item::Globals(block) = item else { continue };
+        let weight = if block.constant.is_some() { 1 } else { 2 };
+        for name in block.vars.iter().flat_map(|it| &it.names) {
+            *found.entry(Key(name.text)).or_default() += weight;
+        }
+    }
+    found
 }
 
 fn folder_of(path: &str) -> &str {

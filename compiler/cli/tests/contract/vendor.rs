@@ -466,17 +466,26 @@ fn automation_studio_has_its_own_words() {
     folder.write("Press/Press.st", PRESS_BODY);
     folder.write("Press/Work.st", "ACTION Work:\n\tworked := worked + 1;\nEND_ACTION\n");
     folder.write("Press/Press.typ", "TYPE Local : STRUCT a : INT; END_STRUCT; END_TYPE");
-    folder.write("Mill/Mill.typ", "TYPE Local : STRUCT b : STRING[3]; END_STRUCT; END_TYPE");
-    folder.write("Mill/Mill.var", "VAR it : Local := (0); END_VAR");
-    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tit.b := 'ab';\nEND_PROGRAM\n");
+    folder
+        .write("Mill/Mill.typ", "TYPE Local : STRUCT b : STRING[MOST]; inner : INT; Inner : INT; END_STRUCT; END_TYPE");
+    folder.write(
+        "Mill/Mill.var",
+        "VAR it : Local := (0); END_VAR VAR CONSTANT MOST : INT := 3; LEAST : INT := 1; END_VAR",
+    );
+    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tit.b := 'abcd';\n\tit.inner := MOST - LEAST;\nEND_PROGRAM\n");
     let vars = "Press.worked,Press.rises,Press.falls,Press.changes,Press.number,Press.reader.Type,Press.sample.Type";
     for backend in ["interpret", "native", "rust"] {
         let run =
             format!("run . --program Press --dialect codesys --backend {backend} --scans 4 --vars {vars} --trace -");
         assert_eq!(folder.staunch(&run).out(0), WORDS_TRACE, "{backend}");
     }
-    let trace = folder.staunch("run . --program Mill --dialect codesys --scans 1 --vars Mill.it.b --trace -").out(0);
-    assert_eq!(trace, "scan,time_ms,Mill.it.b\n1,0,ab\n");
+    let trace = folder
+        .staunch("run . --program Mill --dialect codesys --scans 1 --vars Mill.it.b,Mill.it.inner --trace -")
+        .out(0);
+    assert_eq!(trace, "scan,time_ms,Mill.it.b,Mill.it.inner\n1,0,abc,2\n");
+    // Which of two members is meant is not known where their names differ by capitals alone.
+    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tit.Inner := 1;\nEND_PROGRAM\n");
+    has(&folder.staunch("check . --dialect codesys").err(1), &["Mill/Mill.typ:1:", "`Inner` is declared twice"]);
     // A call of what has no body is refused where the program is built.
     folder
         .write("Lib/Lib.fun", format!("{LIB}FUNCTION memcpy : UDINT VAR_INPUT pDest : UDINT; END_VAR END_FUNCTION\n"));

@@ -2,21 +2,23 @@
 //! several declare is read once; where they declare different types by one name, each is in a namespace of its folder's.
 
 use super::folder_of;
-use crate::Sources;
 use crate::ast::{File, Item, Name, Path, TypeDecl};
 use crate::lex::{Comments, Kind, Scanner};
 use crate::source::Span;
 use crate::spelling::Key;
+use crate::{Source, Sources};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::hash_map::Entry;
 
-/// Leaves one of several equal types, and puts those that differ into namespaces that their folders use.
-pub(super) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources) {
+/// Leaves one of several equal types, and puts those that differ into namespaces that their folders use. So are the CONSTANTs of
+/// a program that the types of its folder name, in the `shared` files.
+pub(super) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources, shared: &[usize]) {
     let own: Vec<usize> = (0..files.len()).filter(|at| !sources.files()[*at].is_bundled()).collect();
     let folder = |at: usize| folder_of(&sources.files()[at].path);
     let apart = different(files, &own, sources);
     let holds = |at: usize, name: &Key<'s>| apart.get(name).is_some_and(|it| it.contains(&at));
-    let with_space: Vec<usize> = own.iter().copied().filter(|at| apart.keys().any(|it| holds(*at, it))).collect();
+    let has_space = |at: &usize| shared.contains(at) || apart.keys().any(|it| holds(*at, it));
+    let with_space: Vec<usize> = own.iter().copied().filter(has_space).collect();
     drop_copies(files, own.iter().copied().filter(|it| !with_space.contains(it)), sources);
     let root = common(own.iter().map(|at| folder(*at)));
     for at in &own {
@@ -122,9 +124,18 @@ fn drop_copies<'s>(files: &mut [File<'s>], of: impl Iterator<Item = usize>, sour
     }
 }
 
+/// The names in the types of a folder.
+pub(super) fn words_of_types<'s>(folder: &str, sources: &'s Sources) -> FxHashSet<Key<'s>> {
+    let is_list = |it: &&Source| folder_of(&it.path) == folder && super::has_extension(&it.path, "typ");
+    sources.files().iter().filter(is_list).flat_map(|it| words_in(&it.text)).map(Key).collect()
+}
+
 /// What a declaration says, without comments.
 fn words<'s>(ty: &TypeDecl<'_>, sources: &'s Sources) -> Vec<&'s str> {
-    let text = sources.text(ty.name.span.to(ty.ty.span));
+    words_in(sources.text(ty.name.span.to(ty.ty.span)))
+}
+
+fn words_in(text: &str) -> Vec<&str> {
     let mut scanner = Scanner::new(text);
     scanner.end_comments(Comments::Plain);
     let mut words = Vec::new();

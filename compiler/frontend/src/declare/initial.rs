@@ -23,10 +23,9 @@ struct Runs {
     len: u64,
 }
 
-/// `(0)`
+/// `(0)`; `0` as an element.
 fn is_zero(expr: &ast::Expr<'_>) -> bool {
-    let ast::ExprKind::Paren(inner) = &expr.kind else { return false };
-    matches!(&inner.kind, ast::ExprKind::Literal(it) if matches!(it.value, ast::LiteralValue::Integer { value: 0, .. }))
+    matches!(&expr.bare().kind, ast::ExprKind::Literal(it) if matches!(it.value, ast::LiteralValue::Integer { value: 0, .. }))
 }
 
 impl<'s> Declarations<'s> {

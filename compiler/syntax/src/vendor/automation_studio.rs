@@ -14,6 +14,7 @@ pub const NAMES: &[Kind] = &[
     Kind::Persistent,
     Kind::Until,
     Kind::Exit,
+    Kind::By,
     Kind::VarAccess,
 ];
 
