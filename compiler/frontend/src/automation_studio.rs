@@ -10,20 +10,21 @@ use crate::added::STARTED_UP;
 use crate::ast::{
     Expr, ExprKind, File, Item, Name, Pou, PouKind, Statement, TypeDecl, TypeKind, VarBlock, VarDecl, VarKind,
 };
-use crate::dialect::{self, Dialect};
-use crate::names::functions;
 use crate::spelling::Key;
 use crate::start_up::once;
 use crate::testing::tree::variables;
 use rustc_hash::FxHashMap;
 
+/// Functions that remember what they were given, each with the unit of the library that is told what that was.
+pub(crate) const EDGES: [(&str, &str); 3] = [("EDGEPOS", "__EDGEPOS"), ("EDGENEG", "__EDGENEG"), ("EDGE", "__EDGE")];
+
 const INIT: &str = "_INIT";
 const CYCLIC: &str = "_CYCLIC";
 const EXIT: &str = "_EXIT";
 
-/// Puts the parts of programs and functions together.
-pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) {
-    let shared = join(files, sources, dialect);
+/// Puts the parts of programs and functions together. A function without a body that `is_known` is not one of the program's.
+pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources, is_known: &dyn Fn(&Pou<'_>) -> bool) {
+    let shared = join(files, sources, is_known);
     if !sources.is_of_automation_studio() {
         return;
     }
@@ -68,9 +69,9 @@ fn number_values(ty: &mut TypeDecl<'_>) {
 }
 
 /// Gives the files whose CONSTANTs are those of a program, and of the types of its folder.
-fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, dialect: Dialect) -> Vec<usize> {
+fn join<'s>(files: &mut [File<'s>], sources: &'s Sources, is_known: &dyn Fn(&Pou<'_>) -> bool) -> Vec<usize> {
     let paths: Vec<&'s str> = sources.files().iter().map(|it| it.path.as_str()).collect();
-    join_functions(files, &paths, dialect);
+    join_functions(files, &paths, is_known);
     let folders: Vec<&'s str> = paths.iter().map(|it| folder_of(it)).collect();
     let mut programs: FxHashMap<&'s str, usize> = FxHashMap::default();
     for ((at, file), folder) in files.iter().enumerate().zip(&folders) {
@@ -192,7 +193,7 @@ fn name_of(folder: &str) -> &str {
 }
 
 /// Gives the bodies of functions and function blocks the declarations in files `.fun`.
-fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str], dialect: Dialect) {
+fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str], is_known: &dyn Fn(&Pou<'_>) -> bool) {
     let mut heads: FxHashMap<Key<'s>, Pou<'s>> = FxHashMap::default();
     let is_list = |at: usize| paths.get(at).is_some_and(|it| has_extension(it, "fun"));
     if !(0..files.len()).any(is_list) {
@@ -206,7 +207,7 @@ fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str], dialect: Dialec
                 Item::Pou(pou) if bodies.contains(&Key(pou.name.text)) => {
                     heads.insert(Key(pou.name.text), pou);
                 }
-                Item::Pou(pou) if is_known(&pou, dialect) => {}
+                Item::Pou(pou) if is_known(&pou) => {}
                 // Its body is not among the sources.
                 Item::Pou(pou) if stubs.iter().any(|it| is_the_same(it, &pou)) => {}
                 Item::Pou(pou) => {
@@ -226,23 +227,6 @@ fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str], dialect: Dialec
             pou.doc = pou.doc.take().or(head.doc);
         }
     }
-}
-
-/// Whether a declaration without a body is of what is here without it: an operator, a standard function, or a standard block that has
-/// these parameters.
-fn is_known(pou: &Pou<'_>, dialect: Dialect) -> bool {
-    const OPERATORS: [&str; 7] = ["AND", "OR", "XOR", "NOT", "MOD", "ADR", "SIZEOF"];
-    let name = pou.name.text;
-    if pou.kind == PouKind::Function {
-        let is_edge = |it: &(&str, &str)| it.0.eq_ignore_ascii_case(name);
-        return OPERATORS.iter().any(|it| it.eq_ignore_ascii_case(name))
-            || crate::prelude::EDGES.iter().any(is_edge)
-            || functions::exists_in(name, dialect);
-    }
-    let Some(block) = dialect::bare_block(dialect, name) else { return false };
-    let has_pin = |wanted: &str| block.info().pins.iter().any(|it| it.name.eq_ignore_ascii_case(wanted));
-    let shown = pou.blocks.iter().filter(|it| it.kind != VarKind::Var);
-    shown.flat_map(|it| &it.vars).flat_map(|it| &it.names).all(|it| has_pin(it.text))
 }
 
 /// Whether two declarations without bodies are of one name and have the same parameters: RF_TRIG is in two libraries of Automation Studio's.

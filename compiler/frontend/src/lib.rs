@@ -305,7 +305,8 @@ struct Trees<'s> {
 
 fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
     let sources = log.sources;
-    automation_studio::expand(&mut files, sources, log.options.dialect);
+    let dialect = log.options.dialect;
+    automation_studio::expand(&mut files, sources, &|it| names::functions::is_in_the_library(it, dialect));
     files.iter_mut().flat_map(|it| std::mem::take(&mut it.apart)).for_each(|it| log.report(it.1));
     let stubs = library::prepare(&mut files, sources);
     stubs.refused.iter().for_each(|it| log.report(library::c_code(*it)));

@@ -1,7 +1,7 @@
 //! How a program is read.
 
 use crate::dialect::Dialect;
-use crate::lex::{Comments, Habits};
+use crate::source::{Comments, Habits};
 use crate::{Source, Sources};
 use staunch_ir::{BlockId, Location, Part, Use, Uses};
 use staunch_runtime::{BLOCKS, BlockOption};
@@ -65,7 +65,7 @@ impl Options {
         let own = sources.habits(source);
         match own.comments {
             Comments::Plain => own,
-            Comments::Nested => Habits { comments: Habits::comments_of(self.dialect.name()), ..own },
+            Comments::Nested => Habits { comments: Comments::of_dialect(self.dialect.name()), ..own },
         }
     }
 

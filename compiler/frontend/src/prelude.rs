@@ -5,10 +5,12 @@ mod index;
 mod tcunit;
 mod vendor;
 
+use crate::automation_studio::EDGES;
 use crate::dialect::Dialect;
 use crate::dialect::library::{is_one_of, leads_to};
-use crate::lex::{Habits, Kind, Known, Tokens, lex_with};
+use crate::lex::{Kind, Known, Tokens, lex_with};
 use crate::options::Options;
+use crate::source::Habits;
 use crate::{Code, Diagnostic, Severity, Source, Sources, Span};
 use rustc_hash::FxHashSet;
 use staunch_runtime::Class;
@@ -126,9 +128,6 @@ pub(crate) const LIST: &str = "Global_Variables";
 /// What begins a sequential function chart, and the units that one may need: one of them is of the dialect.
 const INITIAL_STEP: &str = "INITIAL_STEP";
 const CHARTS: [&str; 2] = ["__Chart", "__MatiecChart"];
-
-/// Functions of Automation Studio that remember what they were given, each with the unit that is told what that was.
-pub(crate) const EDGES: [(&str, &str); 3] = [("EDGEPOS", "__EDGEPOS"), ("EDGENEG", "__EDGENEG"), ("EDGE", "__EDGE")];
 
 const OF_ANY: [&str; 3] = [ASKING[2], ASKING[3], ASKING[4]];
 
@@ -678,7 +677,7 @@ struct Uses {
 impl Uses {
     fn read(&mut self, file: u16, source: &Source, habits: Habits<'_>, options: &Options) {
         let text = source.text.as_str();
-        let is_of_studio = !habits.names.is_empty();
+        let is_of_studio = habits.is_of_studio;
         let tokens = lex_with(file, text, habits, Known::Never);
         let dialect = dialect_of(&tokens, options);
         let mut types = TypeBlock::default();

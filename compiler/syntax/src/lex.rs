@@ -13,12 +13,12 @@ pub use condition::miswritten;
 pub use declared::{Declaration, Declared, Known, Scope, Subject};
 pub use kind::Kind;
 pub use literal::{DECIMAL, Fault, date, duration, integer, real, string};
-pub use scan::{Comments, Scanner};
+pub use scan::Scanner;
 
 use crate::{
     ast::Name,
     diagnostic::{Code, Diagnostic},
-    source::Span,
+    source::{Comments, Habits, Span},
 };
 
 /// Errors of one file after which reading stops.
@@ -43,28 +43,6 @@ pub struct Tokens<'s> {
     pub c_code: Vec<Span>,
 }
 
-/// What is known of a file before it is read.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Habits<'s> {
-    /// What its project defines for conditional compilation.
-    pub defined: &'s [String],
-    pub comments: Comments,
-    /// Some words of the standard's that are names there.
-    pub names: &'static [Kind],
-}
-
-/// Dialects whose comments end at the first `*)`: MATIEC reads nested ones only by an option, which neither OpenPLC nor
-/// Beremiz gives it.
-const PLAIN: [&str; 1] = ["openplc"];
-
-impl Habits<'_> {
-    /// How comments end in a dialect.
-    pub fn comments_of(dialect: &str) -> Comments {
-        let is_plain = PLAIN.iter().any(|it| it.eq_ignore_ascii_case(dialect));
-        if is_plain { Comments::Plain } else { Comments::Nested }
-    }
-}
-
 /// Reads a text of at most `u32::MAX` bytes.
 pub fn lex(file: u16, text: &str) -> Tokens<'_> {
     lex_with(file, text, Habits::default(), Known::Never)
@@ -84,7 +62,7 @@ pub fn lex_with<'s>(file: u16, text: &'s str, habits: Habits<'s>, known: Known<'
         if kind == Kind::Pragma
             && let Some(dialect) = dialect_named(&text[range.clone()])
         {
-            reading.comments = Habits::comments_of(dialect);
+            reading.comments = Comments::of_dialect(dialect);
             scanner.end_comments(reading.comments);
         }
         reading.token(kind, (offset(range.start), offset(range.end)));

@@ -54,8 +54,8 @@ use chumsky::{Parser, input::InputRef, primitive::custom};
 use crate::{
     ast::{Expr, File},
     diagnostic::{Code, Diagnostic, Severity},
-    lex::{Habits, Kind, Known, lex_with},
-    source::{Sources, Span},
+    lex::{Kind, Known, lex_with},
+    source::{Habits, Sources, Span},
 };
 
 pub use diagnostics::{address_without_sign, controller_service, reserved};
@@ -87,8 +87,8 @@ pub fn parse_with<'s>(
         return File::default();
     }
     let mut tokens = lex_with(file, text, habits, known);
-    invalid_names::mend(&mut tokens, text, file, habits.names);
-    let has_access = !habits.names.is_empty();
+    invalid_names::mend(&mut tokens, text, file, habits.is_of_studio);
+    let has_access = habits.is_of_studio;
     let mut state = State { has_access, ..State::new(file, text, &tokens, namespace::file(file, text)) };
     let items = parse_items(&mut state);
     let (mut found, braces, regions, bindings) = (state.diagnostics, state.braces, state.regions, state.bindings);

@@ -1,10 +1,13 @@
 //! Source files, and positions in them. A text may be made of pieces of a file: what it says of places is said
 //! of the file.
 
-use crate::lex::{Comments, Habits};
+mod habits;
+
 use crate::vendor::{self, Assembly, Device, Piece, Problem, Reference};
 use core::sync::atomic::{AtomicUsize, Ordering};
 use staunch_runtime::Location;
+
+pub use habits::{Comments, Habits};
 
 /// Bytes `start..end` of file number `file`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -502,7 +505,7 @@ impl Sources {
         Habits {
             defined: self.defined(source),
             comments: if is_of_studio { Comments::Plain } else { Comments::Nested },
-            names: if is_of_studio { vendor::NAMES_OF_AUTOMATION_STUDIO } else { &[] },
+            is_of_studio,
         }
     }
 

@@ -2,12 +2,11 @@
 //! of a PROGRAM or FUNCTION_BLOCK are an array, and the call passes its own to a function of the library.
 
 use crate::Span;
-use crate::added::EDGES;
+use crate::added::EDGES as BITS;
 use crate::ast::{
     Argument, ArgumentKind, Bound, Expr, ExprKind, Name, Pou, PouKind, Statement, StatementKind, TypeKind, TypeSpec,
     VarBlock, VarDecl, VarKind,
 };
-use crate::prelude;
 use crate::testing::tree;
 
 /// Writes the calls out in the bodies that share the state of a unit.
@@ -29,13 +28,13 @@ fn written_out(expr: &mut Expr<'_>, count: &mut usize) {
     let span = expr.span;
     let ExprKind::Call(callee, arguments) = &mut expr.kind else { return };
     let ExprKind::Name(name) = &mut callee.kind else { return };
-    let Some((_, function)) = prelude::EDGES.iter().find(|it| it.0.eq_ignore_ascii_case(name.text)) else { return };
+    let Some((_, function)) = super::EDGES.iter().find(|it| it.0.eq_ignore_ascii_case(name.text)) else { return };
     if !matches!(arguments.as_slice(), [Argument { kind: ArgumentKind::Positional(_), .. }]) {
         return;
     }
     name.text = function;
     let index = vec![tree::number(*count, span)];
-    let bit = Expr { kind: ExprKind::Index(Box::new(tree::named(EDGES, span)), index), span };
+    let bit = Expr { kind: ExprKind::Index(Box::new(tree::named(BITS, span)), index), span };
     arguments.push(Argument { kind: ArgumentKind::Positional(bit), span });
     *count += 1;
 }
@@ -45,7 +44,7 @@ fn bits<'s>(count: usize, at: Span) -> VarBlock<'s> {
     let element = TypeSpec { kind: TypeKind::Named(vec![Name { text: "BOOL", span: at }]), span: at };
     let bounds = vec![Bound::Range(tree::number(0, at), tree::number(count - 1, at))];
     let ty = TypeSpec { kind: TypeKind::Array { bounds, element: Box::new(element) }, span: at };
-    let decl = VarDecl::new(vec![Name { text: EDGES, span: at }], ty, at);
+    let decl = VarDecl::new(vec![Name { text: BITS, span: at }], ty, at);
     VarBlock { vars: vec![decl], ..VarBlock::new(VarKind::Var, at) }
 }
 

@@ -3,8 +3,8 @@
 
 use super::folder_of;
 use crate::ast::{File, Item, Name, Path, TypeDecl};
-use crate::lex::{Comments, Kind, Scanner};
-use crate::source::Span;
+use crate::lex::{Kind, Scanner};
+use crate::source::{Comments, Span};
 use crate::spelling::Key;
 use crate::{Source, Sources};
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -1,7 +1,7 @@
 //! The ends of comments and pragmas, as the bytes up to them from after their beginning. That is the rest of the text when the
 //! end is missing; the caller sees that from the last characters.
 
-use super::scan::Comments;
+use crate::source::Comments;
 
 /// `(* … (* … *) … *)`
 pub fn nested(rest: &str) -> usize {

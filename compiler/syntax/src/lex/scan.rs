@@ -3,6 +3,7 @@
 
 use super::comment;
 use super::kind::Kind;
+use crate::source::Comments;
 use core::ops::Range;
 
 /// Reads a text from its start to its end.
@@ -13,16 +14,6 @@ pub struct Scanner<'s> {
     start: usize,
     end: usize,
     comments: Comments,
-}
-
-/// Where `(* a (* b *) c *)` ends.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Comments {
-    /// At the `*)` of its own `(*`, as the standard's third edition has it.
-    #[default]
-    Nested,
-    /// At the first `*)`, as in its second edition.
-    Plain,
 }
 
 impl<'s> Scanner<'s> {

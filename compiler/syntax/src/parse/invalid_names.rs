@@ -29,9 +29,24 @@ struct Found<'s> {
     file: u16,
 }
 
-/// Reports such declarations, and makes one name of the tokens of each of them and of their uses. The `free` words are names in
-/// this file, which may use what another declares.
-pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16, free: &'static [Kind]) {
+/// Words of the standard's that are names in Automation Studio: its own libraries declare such variables and members.
+const OF_STUDIO: &[Kind] = &[
+    Kind::Type,
+    Kind::Program,
+    Kind::Continue,
+    Kind::Configuration,
+    Kind::Retain,
+    Kind::Persistent,
+    Kind::Until,
+    Kind::Exit,
+    Kind::By,
+    Kind::VarAccess,
+];
+
+/// Reports such declarations, and makes one name of the tokens of each of them and of their uses. Some words are names
+/// in a file of Automation Studio, which may use what another declares.
+pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16, is_of_studio: bool) {
+    let free = if is_of_studio { OF_STUDIO } else { &[] };
     members(tokens);
     if !free.contains(&Kind::Configuration) {
         configurations(tokens, text, file);

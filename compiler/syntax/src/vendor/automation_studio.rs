@@ -1,22 +1,7 @@
 //! Files `.var` of B&R's Automation Studio: VAR blocks alone, whose variables are those of the programs in their folder, or of all.
 
 use super::assembly::{Assembly, Chunk};
-use super::scl::token::{Kind as Sign, Tokens};
-use crate::lex::Kind;
-
-/// Words of the standard's that are names in Automation Studio: its own libraries declare such variables and members.
-pub const NAMES: &[Kind] = &[
-    Kind::Type,
-    Kind::Program,
-    Kind::Continue,
-    Kind::Configuration,
-    Kind::Retain,
-    Kind::Persistent,
-    Kind::Until,
-    Kind::Exit,
-    Kind::By,
-    Kind::VarAccess,
-];
+use super::scl::token::{Kind, Tokens};
 
 /// Whether a file with this name declares variables, types or functions.
 pub fn is_list(path: &str) -> bool {
@@ -28,8 +13,8 @@ pub fn is_list(path: &str) -> bool {
 pub fn variables(path: &str, text: &str) -> Option<Assembly> {
     let is_it = path.rsplit_once('.').is_some_and(|it| it.1.eq_ignore_ascii_case("var"));
     let is_block =
-        |it: &super::scl::token::Token| it.kind == Sign::Word && text[it.place.clone()].eq_ignore_ascii_case("VAR");
-    let mut tokens = Tokens::new(text).filter(|it| it.kind != Sign::Pragma).peekable();
+        |it: &super::scl::token::Token| it.kind == Kind::Word && text[it.place.clone()].eq_ignore_ascii_case("VAR");
+    let mut tokens = Tokens::new(text).filter(|it| it.kind != Kind::Pragma).peekable();
     if !is_it || !tokens.peek().is_some_and(is_block) {
         return None;
     }
