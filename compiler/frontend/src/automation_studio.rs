@@ -28,6 +28,7 @@ pub(crate) fn expand<'s>(files: &mut [File<'s>], sources: &'s Sources, is_known:
     if !sources.is_of_automation_studio() {
         return;
     }
+    members::rename_types(files);
     scopes::expand(files, sources, &shared);
     members::expand(files, sources);
     let own = files.iter_mut().zip(sources.files()).filter(|it| !it.1.is_bundled());

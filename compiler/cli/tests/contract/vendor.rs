@@ -503,7 +503,8 @@ fn automation_studio_has_its_own_words() {
 
 /// A comment ends at the first `*)`, and one that looks like SCL's names is a comment.
 const MODES: &str = "TYPE\n\tMode : (mOFF, mBIG := 70000); (*which (*it is*) (* *) (*#CMD#;*)\n\
-     Sample : STRUCT Type : INT; (*#PAR#;*) Continue : BOOL; Until : INT; END_STRUCT;\nEND_TYPE\n";
+     Sample : STRUCT Type : INT; (*#PAR#;*) Continue : BOOL; Until : INT; Constant : INT; END_STRUCT;\n\
+     logRead : STRUCT a : INT; END_STRUCT;\nEND_TYPE\n";
 const OPERATOR: &str = "{REDUND_OK} FUNCTION AND : ANY VAR_INPUT IN1 : ANY; IN2 : ANY; END_VAR END_FUNCTION\n\
      {REDUND_OK} FUNCTION EDGEPOS : BOOL VAR_INPUT IN : BOOL; END_VAR END_FUNCTION\n\
      {REDUND_OK} FUNCTION MAX : ANY VAR_INPUT IN1 : ANY; IN2 : ANY; END_VAR END_FUNCTION\n\
@@ -511,18 +512,19 @@ const OPERATOR: &str = "{REDUND_OK} FUNCTION AND : ANY VAR_INPUT IN1 : ANY; IN2 
      M : BOOL; END_VAR END_FUNCTION_BLOCK\n\
      FUNCTION st_ident : UINT VAR_INPUT ST_ident : {REDUND_UNREPLICABLE} UDINT; END_VAR END_FUNCTION\n";
 const LIB: &str = "{REDUND_ERROR} FUNCTION_BLOCK Reader VAR_INPUT Source : REFERENCE TO Sample; END_VAR VAR_OUTPUT Type : INT; \
-     END_VAR VAR edges : INT; END_VAR END_FUNCTION_BLOCK\n";
+     END_VAR VAR edges : INT; END_VAR END_FUNCTION_BLOCK\n\
+     FUNCTION_BLOCK LogRead VAR_INPUT on : BOOL; END_VAR VAR inner : logRead; END_VAR END_FUNCTION_BLOCK\n";
 const LIB_BODY: &str = "FUNCTION_BLOCK Reader\n\tType := Source.Type + 1;\n\tIF EDGEPOS(Type > 5) THEN edges := edges + 1; END_IF\n\
      Source.Continue := edges > 0;\nEND_FUNCTION_BLOCK\n";
 const PRESS: &str = "VAR\n\tworked, rises, falls, changes : INT; number : DINT; toggles : BOOL; sample : Sample := (0);\n\
-     this : REFERENCE TO Sample; reader : Reader; local : Local; END_VAR\n";
+     this : REFERENCE TO Sample; reader : Reader; local : Local; entry : logRead; unused : LogRead; END_VAR\n";
 /// `toggles` is TRUE, FALSE, TRUE, FALSE: a call that is not reached keeps what it was given last.
 const PRESS_BODY: &str = "PROGRAM _INIT\n\tthis ACCESS ADR(sample);\n\treader.Source := ADR(sample);\nEND_PROGRAM\n\
      PROGRAM _CYCLIC\n\ttoggles := NOT toggles;\n\tIF EDGEPOS(toggles) THEN rises := rises + 1; END_IF\n\
      IF EDGENEG(toggles) THEN falls := falls + 1; END_IF\n\
      CASE worked OF 0: Work; 1: Work(); END_CASE\n\
      IF EDGE(toggles) OR EDGEPOS(worked > 1) THEN changes := changes + 1; END_IF\n\
-     gMode := mBIG;\n\tnumber := gMode + 1;\n\tthis.Type := MAX(4, worked + 5);\n\treader();\n\
+     gMode := mBIG;\n\tnumber := gMode + 1;\n\tentry.a := 5;\n\tthis.Type := MAX(4, worked + entry.a);\n\treader();\n\
      FOR local.a := 0 TO 9 DO IF this.Continue THEN EXIT; END_IF END_FOR\nEND_PROGRAM\n";
 const WORDS_TRACE: &str = "scan,time_ms,Press.worked,Press.rises,Press.falls,Press.changes,Press.number,Press.reader.Type,\
      Press.sample.Type\n1,0,1,1,0,1,70001,7,6\n2,10,2,1,1,2,70001,8,7\n3,20,2,2,1,3,70001,8,7\n4,30,2,2,2,4,70001,8,7\n";

@@ -41,6 +41,8 @@ const OF_STUDIO: &[Kind] = &[
     Kind::Exit,
     Kind::By,
     Kind::VarAccess,
+    Kind::VarGlobal,
+    Kind::Constant,
 ];
 
 /// Reports such declarations, and makes one name of the tokens of each of them and of their uses. Some words are names
