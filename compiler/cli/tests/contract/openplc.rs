@@ -331,6 +331,6 @@ fn comments_end_as_the_dialect_has_it() {
     let run = "run a.st --scans 1 --vars y --trace - --dialect";
     assert_eq!(folder.staunch(&format!("{run} openplc")).out(0), "scan,time_ms,y\n1,0,1\n");
     has(&folder.staunch(&format!("{run} openplc4")).err(1), &["a.st:2:1", "comments nest"]);
-    folder.write("staunch.toml", "sources = [\"a.st\"]\ndialect = \"openplc\"\n");
+    folder.write("staunch.toml", "files = [\"a.st\"]\ndialect = \"openplc\"\n");
     assert_eq!(folder.staunch("run --scans 1 --vars y --trace -").out(0), "scan,time_ms,y\n1,0,1\n");
 }
