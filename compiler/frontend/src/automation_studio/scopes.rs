@@ -96,12 +96,14 @@ fn is_in(folder: &str, other: &str) -> bool {
 /// The length of the path that all folders begin with.
 fn common<'s>(mut folders: impl Iterator<Item = &'s str>) -> usize {
     let Some(first) = folders.next() else { return 0 };
-    let length = folders.fold(first.len(), |length, it| {
+    folders.fold(first.len(), |length, it| {
         let same = first.bytes().zip(it.bytes()).take(length).take_while(|it| it.0 == it.1).count();
-        let is_whole = |it: &str| it.len() == same || it[same..].starts_with(['/', '\\']);
-        if is_whole(first) && is_whole(it) { same } else { first[..same].rfind(['/', '\\']).unwrap_or(0) }
-    });
-    length
+        let ends_at = |it: &str| it.len() == same || it.get(same..).is_some_and(|it| it.starts_with(['/', '\\']));
+        if ends_at(first) && ends_at(it) {
+            return same;
+        }
+        first.bytes().take(same).rposition(|it| matches!(it, b'/' | b'\\')).unwrap_or(0)
+    })
 }
 
 /// A type that several folders declare, for their own programs, is one type where they declare the same.
