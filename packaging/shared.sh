@@ -24,8 +24,8 @@ install_packages() {
 # The command for a target, which `packaging/compile` has made.
 command_of() {
     case "$1" in
-    *-windows-*) echo "$CARGO_TARGET_DIR/$1/release/staunch.exe" ;;
-    *) echo "$CARGO_TARGET_DIR/$1/release/staunch" ;;
+    *-windows-*) echo "$CARGO_TARGET_DIR/$1/dist/staunch.exe" ;;
+    *) echo "$CARGO_TARGET_DIR/$1/dist/staunch" ;;
     esac
 }
 

@@ -1,4 +1,4 @@
-//! The programs on a machine without an operating system, which tells what it finds by the calls that QEMU's user mode takes.
+//! The programs on a machine without an operating system, which reports what it finds by the calls that QEMU's user mode takes.
 #![no_std]
 #![no_main]
 

@@ -240,7 +240,7 @@ fn the_front_end_has_no_more_tables_that_are_keyed_by_places() {
     };
     let spans = keyed("Span");
     assert_eq!(spans.len(), KEYED_BY_SPANS, "more of them need ids; with fewer, lower the number: {spans:#?}");
-    // The column of a `Location` ends at 65,535: it is for people. What is left is of expressions.
+    // The column of a `Location` ends at 65,535: it is for people. The tables that are left are of expressions.
     let locations = keyed("Location");
     assert!(locations.iter().all(|it| it.contains("pub written: ")) && locations.len() == 1, "{locations:#?}");
 }

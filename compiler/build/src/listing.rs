@@ -33,7 +33,7 @@ fn is_text_of_automation_studio(path: &Path) -> bool {
 fn is_data_block(path: &Path) -> bool {
     let mut begins = Vec::new();
     let read = std::fs::File::open(path).map(|it| it.take(4096).read_to_end(&mut begins));
-    // What it holds decides, and of its name only that of a list of variables.
+    // Its content decides; its name matters only for a list of variables.
     let name = if has_extension(path, &["var"]) { ".var" } else { "" };
     read.is_ok() && Source::decode(name, &begins).is_assembled()
 }

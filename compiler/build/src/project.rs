@@ -233,8 +233,8 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "fmt" => project.layout = layout::read(value)?,
         _ => {
             return Err(match nearest(key, SETTINGS.into_iter()) {
-                Some(near) => format!("there is no setting `{key}`; did you mean `{near}`?"),
-                None => format!("there is no setting `{key}`; the settings are {}", SETTINGS.join(", ")),
+                Some(near) => format!("unknown setting `{key}`; did you mean `{near}`?"),
+                None => format!("unknown setting `{key}`; the settings are {}", SETTINGS.join(", ")),
             });
         }
     }
@@ -245,7 +245,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
 fn default_pool(value: &toml::Value) -> Result<u32, String> {
     let table = value.as_table().ok_or("`pool` must be a table with `default`")?;
     if let Some(key) = table.keys().find(|it| *it != "default") {
-        return Err(format!("there is no setting `{key}` of `pool`; the only one is `default`"));
+        return Err(format!("unknown setting `{key}` of `pool`; the only one is `default`"));
     }
     let count = table.get("default").ok_or("`pool` needs `default`, the number of objects")?;
     let fits = count.as_integer().and_then(|it| u32::try_from(it).ok()).filter(|it| (1..=65535).contains(it));

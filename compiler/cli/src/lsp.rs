@@ -1,10 +1,12 @@
 //! `lsp`: an editor's questions, answered on standard input and output.
 
+mod child;
+
 use crate::args::Common;
 use crate::{input, other_dialects, session};
 use staunch_build::{Project, listing};
-use staunch_frontend::{Source, Sources};
-use staunch_lsp::{Choice, Connection, Host, Unit};
+use staunch_frontend::{Dialect, Source, Sources};
+use staunch_lsp::{Choice, Connection, Host, TestResult, Unit, Work};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -30,12 +32,7 @@ impl Host for Disk<'_> {
         let has_settings = found.is_some();
         let mut project = found.unwrap_or_default();
         let libraries = session::seen(&project, "libraries", &project.libraries)?;
-        let listed = session::seen(&project, "files", &project.files)?;
-        let is_in = |arguments: &[PathBuf]| {
-            let files = input::found(arguments).unwrap_or_default();
-            files.iter().any(|it| is_same(it, path))
-        };
-        let sources = match [listed].into_iter().chain(lists_above(folder)).find(|it| !it.is_empty() && is_in(it)) {
+        let sources = match listed(&project, path)? {
             Some(named) => input::read(&named, &libraries)?,
             None => self.alone(path, &libraries)?,
         };
@@ -58,6 +55,30 @@ impl Host for Disk<'_> {
             choice: (!is_chosen).then_some(Choice { accepting: other_dialects::accepting, settings, has_settings }),
         })
     }
+
+    fn test(&self, path: &Path, title: &str) -> Result<Work<Vec<TestResult>>, String> {
+        child::test(self.common, &files(path)?, title)
+    }
+
+    fn compare(&self, path: &Path, from: Dialect, to: Dialect) -> Result<Work<String>, String> {
+        child::compare(self.common, &files(path)?, from, to)
+    }
+}
+
+/// What names the program of a file on the command line.
+fn files(path: &Path) -> Result<Vec<PathBuf>, String> {
+    let project = Project::find(path.parent().unwrap_or(path))?.unwrap_or_default();
+    Ok(listed(&project, path)?.unwrap_or_else(|| vec![path.to_owned()]))
+}
+
+/// The files or the project that list a file: those of staunch.toml, or those of another system nearby.
+fn listed(project: &Project, path: &Path) -> Result<Option<Vec<PathBuf>>, String> {
+    let own = session::seen(project, "files", &project.files)?;
+    let is_in = |arguments: &Vec<PathBuf>| {
+        let files = input::found(arguments).unwrap_or_default();
+        !arguments.is_empty() && files.iter().any(|it| is_same(it, path))
+    };
+    Ok([own].into_iter().chain(lists_above(path.parent().unwrap_or(path))).find(is_in))
 }
 
 impl Disk<'_> {

@@ -28,7 +28,7 @@ pub(crate) fn deduplicate_missing(diagnostics: Vec<Diagnostic>, sources: &Source
     kept
 }
 
-/// Where a file has a USING of a namespace that is not there, unknown names of the file may be in it: they are told with it, once.
+/// Where a file has a USING of a namespace that does not exist, unknown names of the file may be in it: they are reported with it, once.
 pub(crate) fn of_used_namespaces(diagnostics: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let used: Vec<(u16, String)> = diagnostics.iter().filter_map(used_namespace).collect();
     if used.is_empty() {

@@ -30,6 +30,8 @@ pub struct Index {
     places: Vec<DefId>,
     /// Each declaration after what holds it, in the order of these.
     parts: Vec<(DefId, DefId)>,
+    /// For each VAR_EXTERNAL, the global variable.
+    globals: FxHashMap<DefId, DefId>,
     pub(crate) asked: Asked,
     pub(crate) stop: Stop,
 }
@@ -66,8 +68,8 @@ impl Index {
         Self { asked, stop, ..Self::default() }
     }
 
-    /// The place around which names are asked for, where that is in a POU or a type. What is elsewhere, in a CONFIGURATION say, the
-    /// whole program gives its meaning.
+    /// The place around which names are asked for, where that is in a POU or a type. Elsewhere, as in a CONFIGURATION, the
+    /// whole program is checked.
     pub(crate) fn around(&self) -> Option<(u16, u32)> {
         let (file, at) = self.asked.place()?;
         let holds = |it: &&Definition| it.extent.file == file && it.extent.start <= at && at <= it.extent.end;
@@ -87,7 +89,10 @@ impl Index {
     pub(crate) fn add(&mut self, recorder: Recorder, sources: &Sources) {
         let known: FxHashMap<Span, DefId> = self.ids().map(|(id, it)| (it.name, id)).collect();
         let mut uses: FxHashMap<Span, Meaning> = self.uses.drain(..).map(|it| (it.span, it.meaning)).collect();
-        let (found, offered) = recorder.settled();
+        let (found, offered, externals) = recorder.settled();
+        self.globals.extend(
+            externals.iter().filter_map(|(own, global)| known.get(own).copied().zip(known.get(global).copied())),
+        );
         uses.reserve(found.len());
         for (span, target) in found {
             // What the compiler writes out has the place of what it stands for. The library's names may be other ones.
@@ -138,6 +143,15 @@ impl Index {
         // A name that is empty may be where another one begins.
         let declared = self.places[..after].iter().rev().take(2).find(|it| holds(self.get(**it).name));
         used.or_else(|| declared.map(|it| (self.get(*it).name, Meaning::Definition(*it))))
+    }
+
+    /// The declarations of one variable: a global one, and then each VAR_EXTERNAL of it.
+    pub fn declarations_of(&self, id: DefId) -> Vec<DefId> {
+        let global = self.globals.get(&id).copied().unwrap_or(id);
+        let mut all: Vec<_> = self.globals.iter().filter(|it| *it.1 == global).map(|it| *it.0).collect();
+        all.sort_unstable();
+        all.insert(0, global);
+        all
     }
 
     /// The names that are used in a part of a text, in their order.

@@ -6,6 +6,7 @@ mod added;
 mod chart;
 mod declared;
 mod enabled;
+mod in_threads;
 mod index;
 mod said_once;
 mod testing;
@@ -363,7 +364,7 @@ fn report_unclosed(problem: Diagnostic, log: &mut Log<'_>) {
         return log.report(
             Diagnostic::new(Code::W0531, opened, "this unit ends with its file, as an object of CODESYS does")
                 .label("its end is not written")
-                .other(end, "if the file goes on in the original, a part is missing here")
+                .other(end, "if the original file continues, a part is missing here")
                 .help(problem.help.unwrap_or_default()),
         );
     }
@@ -378,6 +379,36 @@ fn report_reserved(span: Span, log: &mut Log<'_>) {
     }
 }
 
+/// From so many bytes on, files are parsed on several threads.
+const MANY_BYTES: usize = 128 << 10;
+
+/// What parsing a file gave: its tree, and what is reported of it.
+type Parsed<'s> = (ast::File<'s>, Vec<Diagnostic>);
+
+/// Parses each file that is to be; `None` for the others.
+fn parse_each<'s>(sources: &'s Sources, options: &Options) -> Vec<Option<Parsed<'s>>> {
+    let files = sources.files();
+    let parse = |at: usize| {
+        let (source, number) = (&files[at], u16::try_from(at).unwrap_or(u16::MAX));
+        let is_parsed = !source.is_expression() && !is_incomplete(source);
+        is_parsed.then(|| {
+            let mut found = Vec::new();
+            let habits = options.habits(sources, source);
+            let file = parse::parse_with(number, &source.text, habits, Known::Later, &mut found);
+            (file, found)
+        })
+    };
+    match files.iter().map(|it| it.text.len()).sum::<usize>() < MANY_BYTES {
+        true => (0..files.len()).map(parse).collect(),
+        false => in_threads::each(files.len(), parse),
+    }
+}
+
+/// Where a file ends too early, what was read says little of the rest.
+fn is_incomplete(source: &Source) -> bool {
+    source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent))
+}
+
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
 fn parse_all<'s>(
     sources: &'s Sources,
@@ -389,20 +420,19 @@ fn parse_all<'s>(
     let mut is_broken = false;
     // No file there is of another system, whatever its comments look like.
     let is_of_studio = sources.is_of_automation_studio();
-    for (source, number) in sources.files().iter().zip(0u16..) {
+    for ((source, number), parsed) in sources.files().iter().zip(0u16..).zip(parse_each(sources, options)) {
         if source.is_expression() {
             files.push(ast::File::default());
             continue;
         }
         let before = diagnostics.len();
         diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
-        if source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent)) {
-            // What was read before the end says little of the rest.
+        let Some((file, found)) = parsed else {
             is_broken = true;
             continue;
-        }
-        let habits = options.habits(sources, source);
-        files.push(parse::parse_with(number, &source.text, habits, Known::Later, diagnostics));
+        };
+        files.push(file);
+        diagnostics.extend(found);
         diagnostics[before..].iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         // Only what does not parse is looked at again, and JSON, which is one pragma.
         let unclosed = files.last_mut().map(|it| it.unclosed.as_mut_slice()).unwrap_or_default();

@@ -54,7 +54,7 @@ pub struct Gain<'a> {
     /// Whether a WHILE or REPEAT is taken that can fault and stores neither to an element of an array nor through a reference: where the
     /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
-    /// Whether a loop is there twice, so that one of them needs no checks of its indices.
+    /// Whether a loop gets a second version that needs no checks of its indices.
     pub of_ends: bool,
 }
 

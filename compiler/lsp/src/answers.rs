@@ -8,6 +8,7 @@ pub mod folds;
 pub mod hierarchy;
 pub mod hints;
 pub mod layout;
+pub mod lenses;
 pub mod navigate;
 pub mod problems;
 pub mod rename;

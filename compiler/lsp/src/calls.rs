@@ -1,4 +1,4 @@
-//! Calls as they are written, found by their brackets: while one is typed there is no tree of it.
+//! Calls as they are written, found by their brackets: a call that is being typed has no syntax tree.
 
 use staunch_frontend::Span;
 use staunch_syntax::lex::{Kind, lex};

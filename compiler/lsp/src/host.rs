@@ -4,13 +4,36 @@ use staunch_frontend::format::Style;
 use staunch_frontend::{Diagnostic, Dialect, Levels, Options, Sources};
 use std::path::{Path, PathBuf};
 
-/// Finds the files of projects.
+/// Work that takes a while, for a thread of its own.
+pub type Work<T> = Box<dyn FnOnce() -> Result<T, String> + Send>;
+
+/// What came of a test.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TestResult {
+    pub title: String,
+    /// `passed`, or what went wrong, in a line.
+    pub outcome: String,
+}
+
+/// Finds the files of projects, and runs them as they are on disk.
 pub trait Host {
     /// The program that a file is a part of, as it is on disk. A file of no project is a program by itself.
     ///
     /// # Errors
     /// A sentence that says what is wrong: with the project's settings, or with a file that cannot be read.
     fn unit(&self, path: &Path) -> Result<Unit, String>;
+
+    /// The work of running a test of the program that a file is a part of.
+    ///
+    /// # Errors
+    /// A sentence, as above.
+    fn test(&self, path: &Path, title: &str) -> Result<Work<Vec<TestResult>>, String>;
+
+    /// The work of comparing the program that a file is a part of with itself on another system: the verdict, in a line.
+    ///
+    /// # Errors
+    /// A sentence, as above.
+    fn compare(&self, path: &Path, from: Dialect, to: Dialect) -> Result<Work<String>, String>;
 }
 
 /// The files that are one program, with the settings by which they are read.

@@ -8,11 +8,12 @@ mod uri;
 
 mod host;
 mod project;
+mod results;
 
 mod answers;
 
 mod server;
 
-pub use host::{Choice, Host, Unit};
+pub use host::{Choice, Host, TestResult, Unit, Work};
 pub use lsp_server::Connection;
 pub use server::serve;

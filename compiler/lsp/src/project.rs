@@ -2,6 +2,7 @@
 
 use crate::host::Unit;
 use crate::place::{self, Place};
+use crate::results::Results;
 use crate::uri;
 use gen_lsp_types::{Location, Position};
 use rustc_hash::FxHashMap;
@@ -32,6 +33,7 @@ pub struct Project {
     asks_dialects: bool,
     /// Those that accept it as it was then.
     pub dialects: Vec<Dialect>,
+    pub results: Results,
 }
 
 /// Each check has another number.
@@ -59,6 +61,7 @@ impl Project {
             check: None,
             asks_dialects: true,
             dialects: Vec::new(),
+            results: Results::default(),
         }
     }
 
@@ -75,6 +78,7 @@ impl Project {
         if let Some(head) = self.file(path).and_then(|it| self.heads.get_mut(usize::from(it))) {
             *head = None;
         }
+        self.results.forget();
         self.forget();
     }
 

@@ -1,11 +1,13 @@
 //! The messages of an editor. Changes of documents are read before requests are answered, so that no answer is about an older text.
 
 mod capabilities;
+mod execute;
 mod requests;
 
 use crate::answers::{dialects, problems};
 use crate::host::Host;
 use crate::project::{Analysis, CheckId, Documents, Project};
+use crate::results::Task;
 use crate::{place, uri};
 use crossbeam_channel::{Receiver, Sender, select};
 use gen_lsp_types::{
@@ -56,6 +58,7 @@ impl From<String> for Refused {
 pub fn serve(connection: &Connection, host: &dyn Host) -> Result<(), String> {
     let (id, params) = connection.initialize_start().map_err(|it| it.to_string())?;
     let can_create = can_create_files(&params);
+    let refreshes_lenses = params["capabilities"]["workspace"]["codeLens"]["refreshSupport"] == true;
     let _: InitializeParams = serde_json::from_value(params).map_err(|it| format!("initialize: {it}"))?;
     let result = capabilities::initialized();
     connection.initialize_finish(id, result).map_err(|it| it.to_string())?;
@@ -67,6 +70,8 @@ pub fn serve(connection: &Connection, host: &dyn Host) -> Result<(), String> {
         open: Vec::new(),
         checks: 0,
         can_create,
+        refreshes_lenses,
+        requests: 0,
         checked: crossbeam_channel::unbounded(),
     };
     server.run()
@@ -86,6 +91,8 @@ struct Open {
     version: i32,
     /// What was said of it is out of date.
     is_due: bool,
+    /// Since it was opened or saved.
+    is_changed: bool,
 }
 
 pub(crate) struct Server<'a> {
@@ -96,6 +103,10 @@ pub(crate) struct Server<'a> {
     open: Vec<Open>,
     /// The editor makes files where an edit asks for that.
     can_create: bool,
+    /// The editor asks for lenses again where it is asked to.
+    refreshes_lenses: bool,
+    /// How many requests the editor got.
+    requests: i32,
     /// How many checks have begun.
     checks: u64,
     /// What they have found out.
@@ -108,6 +119,8 @@ enum Found {
     Whole(CheckId, Arc<Analysis>),
     /// These dialects accept the project of a file.
     Dialects(PathBuf, Vec<Dialect>),
+    /// What a lens began in the project of a file has ended.
+    Ran { path: PathBuf, generation: u64, results: Vec<(Task, String)> },
 }
 
 /// What happens next.
@@ -213,6 +226,8 @@ impl Server<'_> {
             LspNotificationMethod::TextDocumentDidSave => {
                 if let Some(params) = read::<DidSaveTextDocumentParams>(it.params) {
                     let path = uri::path(&params.text_document.uri);
+                    let is_saved = |it: &&mut Open| Some(&it.path) == path.as_ref();
+                    self.open.iter_mut().filter(is_saved).for_each(|it| it.is_changed = false);
                     let saved = self.projects.iter_mut().filter(|it| path.as_ref().is_some_and(|path| it.has(path)));
                     for project in saved {
                         project.saved();
@@ -249,7 +264,7 @@ impl Server<'_> {
         let Some(path) = uri::path(&uri) else { return };
         self.documents.insert(path.clone(), text);
         self.open.retain(|it| it.path != path);
-        self.open.push(Open { uri, path: path.clone(), version, is_due: true });
+        self.open.push(Open { uri, path: path.clone(), version, is_due: true, is_changed: false });
         match self.projects.iter_mut().find(|it| it.has(&path)) {
             Some(project) => project.has_changed(&path),
             None => _ = self.project_of(&path),
@@ -273,7 +288,7 @@ impl Server<'_> {
             }
         }
         if let Some(open) = self.open.iter_mut().find(|it| it.path == path) {
-            open.version = params.text_document.version;
+            (open.version, open.is_changed) = (params.text_document.version, true);
         }
         self.all_are_due(&path);
     }
@@ -365,6 +380,12 @@ impl Server<'_> {
                 project.dialects = dialects;
                 self.open.iter_mut().filter(|it| project.has(&it.path)).for_each(|it| it.is_due = true);
             }
+            Found::Ran { path, generation, results } => {
+                if let Some(project) = self.projects.iter_mut().find(|it| it.has(&path)) {
+                    project.results.end(generation, results);
+                }
+                self.ask_for_lenses()?;
+            }
         }
         self.publish()
     }
@@ -432,7 +453,7 @@ fn ask_dialects(project: &mut Project, ended: &Sender<Found>) {
     if let (Some(ask), Some(path)) = (project.ask_dialects(), first) {
         let ended = ended.clone();
         let work = move || ended.send(Found::Dialects(path, ask()));
-        // Without a thread there is no advice.
+        // Without a thread, no advice is given.
         drop(thread::Builder::new().stack_size(STACK).spawn(work));
     }
 }

@@ -65,7 +65,7 @@ fn counted(session: &str) -> u64 {
     assert!(output.status.success(), "{session}: {report}");
     let refs = report.lines().find_map(|it| it.split_once(" refs:")).expect("a count").1;
     let count: u64 = refs.trim().replace(',', "").parse().expect("a number");
-    // What making the texts takes, and the test itself, is no part of a check.
+    // The cost of making the texts, and of the test itself, is not part of a check.
     if session == "check" { count.saturating_sub(counted("no check")) } else { count }
 }
 

@@ -254,8 +254,8 @@ impl<'p> Function<'_, 'p> {
         self.ins().jump(after, &[]);
     }
 
-    /// Gives the counter the value that it is known to have at the loop's end, so that nobody needs its register any more. What is in
-    /// memory has it.
+    /// Gives the counter the value that it is known to have at the loop's end, so that nobody needs its register any more. Memory has it
+    /// already.
     pub(crate) fn set_end(&mut self, running: &Running<'p>, value: i128) {
         let is_variable = matches!(self.place_value(&running.it.counter), PlaceValue::Variable(_));
         let value = self.integer(types::I64, value);

@@ -1,9 +1,7 @@
 //! From printed tokens to a file that reads well and that rustfmt leaves as it is: source marks become comments,
 //! items get air, and what rustfmt would break at other places is marked to be skipped.
 
-use std::collections::BTreeSet;
-
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::TokenStream;
 
 /// A statement that stands for a comment: the printer of syntax trees has none.
 const MARK: &str = "st_mark!(\"";
@@ -25,9 +23,19 @@ const WIDE: usize = 100;
 /// # Panics
 /// If they are not Rust, which would be a bug in this crate.
 pub fn format(items: TokenStream) -> String {
-    let file = syn::parse2(items).expect("the emitted items are Rust");
+    finish(&print(items))
+}
+
+/// The first half of [`format`]: the text of items, to which that of others can be appended. Their tokens and syntax trees are large: a
+/// program is printed in pieces.
+pub fn print(items: TokenStream) -> String {
+    prettyplease::unparse(&syn::parse2(items).expect("the emitted items are Rust"))
+}
+
+/// The second half, for all items of a file together.
+pub fn finish(printed: &str) -> String {
     let mut lines = Vec::new();
-    for line in hug(&heads(&fill(&prettyplease::unparse(&file)))).lines() {
+    for line in hug(&heads(&fill(printed))).lines() {
         expand(line.to_owned(), &mut lines);
     }
     skip(&space(&strips(&comment(&lines.join("\n")))))
@@ -368,77 +376,4 @@ fn space(text: &str) -> String {
         ended = depth < 2 && !is_comment && (content == "}" || depth == 0 && content.ends_with([';', '}']));
     }
     spaced
-}
-
-/// What of the runtime the tokens name, in order.
-pub fn imports(tokens: &TokenStream) -> Vec<String> {
-    let mut found = BTreeSet::new();
-    collect(tokens.clone(), &mut found);
-    found.into_iter().collect()
-}
-
-fn collect(tokens: TokenStream, found: &mut BTreeSet<String>) {
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    for (at, token) in tokens.iter().enumerate() {
-        match token {
-            TokenTree::Group(group) => collect(group.stream(), found),
-            TokenTree::Ident(ident) => {
-                let name = ident.to_string();
-                if is_type(&name) || is_module(&name) && path_starts(&tokens, at) {
-                    found.insert(name);
-                } else if name == "st_strips" {
-                    found.insert("strips".to_owned());
-                } else if name == "at" && is_method(&tokens, at) {
-                    found.insert("OrFault".to_owned());
-                }
-            }
-            TokenTree::Punct(_) | TokenTree::Literal(_) => {}
-        }
-    }
-}
-
-/// These names are kept from users' types.
-fn is_type(name: &str) -> bool {
-    matches!(name, "Context" | "Fault" | "FaultKind" | "Text" | "Time" | "WideText")
-}
-
-fn is_module(name: &str) -> bool {
-    matches!(
-        name,
-        "exception"
-            | "firmware"
-            | "ops"
-            | "reference"
-            | "text"
-            | "time"
-            | "iec"
-            | "cscape"
-            | "codesys"
-            | "openplc"
-            | "openplc4"
-            | "s7"
-            | "logix"
-    )
-}
-
-fn is_method(tokens: &[TokenTree], at: usize) -> bool {
-    let called = is_arguments(tokens.get(at + 1));
-    called && at.checked_sub(1).and_then(|it| punct(tokens.get(it))) == Some('.')
-}
-
-/// Whether the identifier at `at` is the first of a path with several parts.
-fn path_starts(tokens: &[TokenTree], at: usize) -> bool {
-    let colons = |from: usize| (from..from + 2).all(|it| punct(tokens.get(it)) == Some(':'));
-    colons(at + 1) && !at.checked_sub(2).is_some_and(colons)
-}
-
-fn punct(token: Option<&TokenTree>) -> Option<char> {
-    match token {
-        Some(TokenTree::Punct(punct)) => Some(punct.as_char()),
-        Some(TokenTree::Group(_) | TokenTree::Ident(_) | TokenTree::Literal(_)) | None => None,
-    }
-}
-
-fn is_arguments(token: Option<&TokenTree>) -> bool {
-    matches!(token, Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis)
 }

@@ -14,18 +14,18 @@ use crate::text::readable;
 const DERIVED_FIELDS: usize = 1000;
 
 impl Emitter<'_> {
-    pub fn items(&self) -> TokenStream {
-        let files = self.files();
+    /// The program, in the order of the file, each made when it is asked for.
+    pub fn items(&self) -> impl Iterator<Item = TokenStream> {
         let enums = (0..self.program.enums.len()).map(|at| self.enumeration(EnumId::next(at)));
         let structs = (0..self.program.structs.len()).map(|at| self.structure(StructId::next(at)));
         let functions = (0..self.program.routines.len())
             .map(RoutineId::next)
             .filter(|id| self.program.routine(*id).kind == RoutineKind::Function)
             .map(|id| self.routine(id));
-        let tables = self.tables();
-        let retained = self.retained();
+        let before = [Self::files, Self::tables].into_iter().map(|it| it(self));
+        let retained = std::iter::once_with(|| self.retained());
         let machine = self.shared.then(|| self.machine());
-        quote!(#files #tables #(#enums)* #(#structs)* #retained #(#functions)* #machine)
+        before.chain(enums).chain(structs).chain(retained).chain(functions).chain(machine)
     }
 
     fn files(&self) -> TokenStream {

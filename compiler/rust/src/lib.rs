@@ -43,13 +43,16 @@ mod turns;
 
 mod format;
 mod glue;
+mod imports;
 mod layout_asserts;
 
+use proc_macro2::TokenStream;
 use quote::quote;
 use staunch_ir::Program;
 use staunch_ir::promote::{Gain, promoted};
 
 use emitter::Emitter;
+use imports::Imports;
 
 pub use glue::emit_glue;
 
@@ -128,13 +131,18 @@ pub fn emit(program: &Program, options: &Options) -> String {
     if options.state == State::Lean && !emitter.shared {
         emitter.constants = flash::constants(&emitter);
     }
-    let names = options.names.then(|| emitter.name_table());
-    let items = emitter.items();
-    let items = quote!(#items #names);
     let externals = emitter.externals();
-    let imports = imports(&quote!(#items #externals), &options.runtime, emitter.shared, externals.is_some());
-    let items = quote!(#externals #items);
-    let body = format!("{}{}", format::format(quote!(#imports #items)), layout_asserts::layout(&emitter));
+    let calls_out = externals.is_some();
+    let names = options.names.then(|| emitter.name_table());
+    let mut used = Imports::default();
+    let mut printed = String::new();
+    for item in externals.into_iter().chain(emitter.items()).chain(names) {
+        let text = format::print(item);
+        used.note(&text);
+        printed.push_str(&text);
+    }
+    printed.insert_str(0, &format::print(imports(&used, &options.runtime, emitter.shared, calls_out)));
+    let body = format!("{}{}", format::finish(&printed), layout_asserts::layout(&emitter));
     let header = header(program);
     match &options.shape {
         Shape::File => {
@@ -150,36 +158,19 @@ pub fn emit(program: &Program, options: &Options) -> String {
     }
 }
 
-fn imports(
-    items: &proc_macro2::TokenStream,
-    runtime: &str,
-    shared: bool,
-    calls_out: bool,
-) -> Option<proc_macro2::TokenStream> {
-    let (types, modules): (Vec<_>, Vec<_>) =
-        format::imports(items).into_iter().partition(|it| it.starts_with(|first: char| first.is_uppercase()));
-    let externals = calls_out.then(|| {
-        quote!(
-            use super::Externals;
-        )
-    });
-    let runtime: syn::Path = syn::parse_str(runtime).expect("the runtime's path is a Rust path");
-    let of_runtime = |names: Vec<String>| {
-        let names: Vec<_> = names.iter().map(|it| names::ident(it)).collect();
-        match names.as_slice() {
-            [] => None,
-            [name] => Some(quote!(use #runtime::#name;)),
-            names => Some(quote!(use #runtime::{#(#names),*};)),
-        }
-    };
-    // Editions differ in which of the two come first: each has a group of its own.
-    let (types, modules) = (of_runtime(types), of_runtime(modules));
+fn imports(used: &Imports, runtime: &str, shared: bool, calls_out: bool) -> TokenStream {
     let cell = shared.then(|| {
         quote!(
             use core::cell::Cell;
         )
     });
-    Some(quote!(#cell #externals #types #modules))
+    let externals = calls_out.then(|| {
+        quote!(
+            use super::Externals;
+        )
+    });
+    let used = used.items(runtime);
+    quote!(#cell #externals #used)
 }
 
 fn header(program: &Program) -> String {

@@ -138,7 +138,7 @@ impl Diagnostic {
             .about(Subject::Missing { kind: Missing::Inside, name: format!("{full}.{name}") })
     }
 
-    /// That something of this name cannot be compiled yet; `what` is how it is called in the sentence.
+    /// That something with this name cannot be compiled yet; `what` names it in the sentence.
     pub fn unavailable(name: &str, span: Span, what: &str) -> Self {
         Self::unsupported(span, what).about(Subject::Unavailable { name: name.to_owned() })
     }

@@ -19,6 +19,17 @@ const sent = {
     clear() {},
 };
 
+// What lenses run is on disk, and does not run in a folder that is not trusted.
+async function execute(name, args, next) {
+    if (!vscode.workspace.isTrusted) {
+        void vscode.window.showWarningMessage("The folder is not trusted: its programs do not run.");
+        return;
+    }
+    const changed = vscode.workspace.textDocuments.filter((it) => it.isDirty && it.languageId === "iecst");
+    for (const it of changed) await it.save();
+    return next(name, args);
+}
+
 class Server {
     constructor() {
         this.turn = Promise.resolve();
@@ -48,6 +59,7 @@ class Server {
             {
                 documentSelector: [{ scheme: "file", language: "iecst" }],
                 synchronize: { fileEvents: watchers },
+                middleware: { executeCommand: execute },
             },
         );
         this.client.registerFeature(sent);

@@ -1,4 +1,4 @@
-//! Readers of bytes that come from outside, as fuzzers call them (tests/fuzz): nothing of it is there otherwise.
+//! Readers of bytes that come from outside, as fuzzers call them (tests/fuzz): compiled for them only.
 
 use crate::map::Map;
 use crate::stimulus::Stimulus;

@@ -185,7 +185,7 @@ fn a_setting_that_is_wrong_is_reported_at_its_line() {
         ("cycle = \"0ms\"", 2, "is not a time above zero"),
         ("cycle = 10", 2, "`cycle` must be a string in quotes"),
         ("dialect = \"iecc\"", 2, "there is no dialect `iecc`; did you mean `iec`?"),
-        ("dialekt = \"iec\"", 2, "there is no setting `dialekt`; did you mean `dialect`?"),
+        ("dialekt = \"iec\"", 2, "unknown setting `dialekt`; did you mean `dialect`?"),
         ("allow = [\"W501\"]", 2, "there is no lint `W501`; did you mean `W0501`?"),
         ("deny = [\n  \"W0501\",\n  \"E0203\",\n]", 4, "E0203 is an error"),
         ("quiet = \"yes\"", 2, "`quiet` must be true or false"),

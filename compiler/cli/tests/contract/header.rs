@@ -138,7 +138,7 @@ fn a_host_in_c_has_two_programs() {
     assert_eq!(ran, format!("{table}1 1 1 2.5 five 0\n12 1 15\n"));
 }
 
-/// A host in C, with bytes behind the context that a scan must not touch.
+/// A host in C, with bytes after the context that a scan must not touch.
 const COUNTS: &str = r#"
 #include <stdio.h>
 #include "plant.h"
@@ -165,7 +165,7 @@ int main(void) {
 }
 "#;
 
-/// What divides by zero and continues tells it in the host's context, and nowhere else.
+/// A division by zero after which the program continues is reported in the host's context only.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_host_in_c_is_told_of_minor_faults() {

@@ -9,6 +9,8 @@ mod cache;
 mod check;
 mod coverage;
 mod debug;
+#[path = "../support/editor.rs"]
+mod editor;
 mod external;
 mod fmt;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
@@ -16,6 +18,7 @@ mod gdb;
 mod header;
 #[cfg(unix)]
 mod io;
+mod lenses;
 mod lists;
 mod mutants;
 mod near;

@@ -86,7 +86,7 @@ fn last_traced(folder: &Folder) -> u64 {
 }
 
 /// Kills a program many times over. Each start continues from what the one before left, and no state is from a scan that was not
-/// due yet. The trace cannot tell that: it is written beside the scans, and later than they are.
+/// due yet. The trace does not show that: a thread writes it, later than the scans.
 fn is_killed(folder: &Folder, cycle: Duration, mut run: impl FnMut() -> Command) {
     let (mut before, mut later) = (0, 0);
     for number in 0..kills() {

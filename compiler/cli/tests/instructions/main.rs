@@ -19,6 +19,8 @@
 mod compiling;
 mod driver;
 mod editing;
+#[path = "../support/editor.rs"]
+mod editor;
 mod executable;
 mod measure;
 mod page;

@@ -90,6 +90,9 @@ impl<'s> Declarations<'s> {
                 continue;
             }
             self.check_external(block, decl, &global);
+            if let Some(index) = &self.log.index {
+                index.note_external(name.span, global.name.span);
+            }
             let variable = Variable { name: *name, section: Section::External, ..Variable::clone(&global) };
             self.enter_variable(scope, variable);
         }

@@ -1,6 +1,6 @@
 //! Instructions of Logix whose last operand is a destination, by Rockwell 1756-RM003, *ASCII String Instructions*, *ASCII
-//! Conversion Instructions* and *Move/Logical Instructions*: each assigns the value of a function. What is not supported is
-//! answered with what is written for it.
+//! Conversion Instructions* and *Move/Logical Instructions*: each assigns the value of a function. An instruction that is not
+//! supported is answered with the text that replaces it.
 
 use super::checker::Checker;
 use crate::index::recorder::Named;

@@ -68,6 +68,8 @@ pub(crate) struct Recorder {
     pub stop: Stop,
     offered: RefCell<Vec<Offered>>,
     uses: RefCell<FxHashMap<Span, Named>>,
+    /// The names of VAR_EXTERNALs, and where their global variables are declared.
+    externals: RefCell<Vec<(Span, Span)>>,
     /// Where enumerators are declared, by their names in capitals.
     enumerators: RefCell<FxHashMap<(EnumId, String), Span>>,
     /// What is checked is a copy: an inherited routine.
@@ -101,6 +103,10 @@ impl Recorder {
         }
     }
 
+    pub fn note_external(&self, name: Span, global: Span) {
+        self.externals.borrow_mut().push((name, global));
+    }
+
     pub fn declare_enumerator(&self, owner: EnumId, name: &str, span: Span) {
         self.enumerators.borrow_mut().insert((owner, name.to_ascii_uppercase()), span);
     }
@@ -110,8 +116,8 @@ impl Recorder {
         self.enumerators.borrow().get(&(owner, name.to_ascii_uppercase())).copied()
     }
 
-    /// The names with what they mean, and what is offered.
-    pub(super) fn settled(self) -> (FxHashMap<Span, Named>, Vec<Offered>) {
-        (self.uses.into_inner(), self.offered.into_inner())
+    /// The names with what they mean, what is offered, and VAR_EXTERNALs with their globals.
+    pub(super) fn settled(self) -> (FxHashMap<Span, Named>, Vec<Offered>, Vec<(Span, Span)>) {
+        (self.uses.into_inner(), self.offered.into_inner(), self.externals.into_inner())
     }
 }

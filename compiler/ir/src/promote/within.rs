@@ -1,4 +1,4 @@
-//! A loop whose ends show whether its indices are within their bounds is there twice: without checks, and as it is.
+//! A loop whose ends show whether its indices are within their bounds has two versions: without checks, and as it is.
 //!
 //! ```text
 //! FOR i := 1 TO n - 1 DO             last := n - 1;
@@ -24,7 +24,7 @@ use crate::{
 };
 use staunch_runtime::Context;
 
-/// Operations of a loop that is there twice, and of all those in a routine.
+/// Operations of a loop with two versions, and of all those in a routine.
 const MOST: usize = 64;
 const MOST_IN_A_ROUTINE: usize = 1024;
 

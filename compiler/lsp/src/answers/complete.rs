@@ -60,7 +60,7 @@ struct Here {
 }
 
 impl Here {
-    /// Whether an offer is one of what is here: what could only be visible is no member.
+    /// Whether an offer is one of what is here: what could only be visible is not a member.
     fn takes(&self, analysis: &Analysis, offer: &Offer) -> bool {
         let is_visible_alone = match &offer.meaning {
             Meaning::Function => true,

@@ -64,10 +64,9 @@ pub fn is_same(analysis: &Analysis, one: DefId, other: DefId) -> bool {
 /// parameters; a global variable and each VAR_EXTERNAL of it.
 pub fn family(analysis: &Analysis, id: DefId) -> Vec<DefId> {
     let definition = analysis.index.get(id);
-    if is_global(analysis, definition) {
-        let others = analysis.index.ids().filter(|it| it.0 != id && is_global(analysis, it.1));
-        let alike = others.filter(|it| analysis.name(it.0).eq_ignore_ascii_case(analysis.name(id)));
-        return core::iter::once(id).chain(alike.map(|it| it.0)).collect();
+    let declarations = analysis.index.declarations_of(id);
+    if declarations.len() > 1 {
+        return declarations;
     }
     let Some(owner) = definition.owner else { return vec![id] };
     let is_parameter =
@@ -79,18 +78,6 @@ pub fn family(analysis: &Analysis, id: DefId) -> Vec<DefId> {
         return core::iter::once(id).chain(alike.map(|it| it.0)).collect();
     }
     routines(analysis, id)
-}
-
-/// Whether a variable is a global one, or stands for one.
-fn is_global(analysis: &Analysis, it: &Definition) -> bool {
-    let is_outside = it.owner.is_none_or(|it| {
-        matches!(analysis.index.get(it).kind, DefinitionKind::Configuration | DefinitionKind::Resource)
-    });
-    match it.kind {
-        DefinitionKind::Variable(VarKind::External) => true,
-        DefinitionKind::Variable(VarKind::Global) | DefinitionKind::Constant => is_outside,
-        _ => false,
-    }
 }
 
 /// A METHOD or PROPERTY, with those of other classes that are called where it is.

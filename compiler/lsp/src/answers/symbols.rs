@@ -9,7 +9,7 @@ fn symbol(analysis: &Analysis, id: DefId, definition: &Definition, file: u16) ->
     let children: Vec<_> = outline_of(analysis, Some(id), file);
     let whole = analysis.range(definition.extent);
     let selection_range = analysis.range(definition.name);
-    // A declaration that is written apart from its name does not hold it.
+    // A declaration that does not enclose its name is not its parent.
     let holds = |it: gen_lsp_types::Position| (whole.start.line, whole.start.character) <= (it.line, it.character);
     let is_around = holds(selection_range.start)
         && (selection_range.end.line, selection_range.end.character) <= (whole.end.line, whole.end.character);

@@ -1,14 +1,15 @@
 //! What the server can do, as it says at the start.
 
+use crate::answers::lenses;
 use crate::answers::tokens::{MODIFIERS, TYPES};
 use gen_lsp_types::{
-    CallHierarchyProvider, CodeActionKind, CodeActionOptions, CodeActionProvider, CompletionOptions,
+    CallHierarchyProvider, CodeActionKind, CodeActionOptions, CodeActionProvider, CodeLensOptions, CompletionOptions,
     DefinitionProvider, DocumentFormattingProvider, DocumentHighlightProvider, DocumentRangeFormattingProvider,
-    DocumentSymbolProvider, FoldingRangeProvider, Full, HoverProvider, ImplementationProvider, InitializeResult,
-    InlayHintProvider, ReferencesProvider, RenameOptions, RenameProvider, Save, SelectionRangeProvider,
-    SemanticTokensLegend, SemanticTokensOptions, SemanticTokensProvider, ServerCapabilities, ServerInfo,
-    SignatureHelpOptions, TextDocumentSync, TextDocumentSyncKind, TextDocumentSyncOptions, TypeDefinitionProvider,
-    TypeHierarchyProvider, WorkspaceSymbolProvider,
+    DocumentSymbolProvider, ExecuteCommandOptions, FoldingRangeProvider, Full, HoverProvider, ImplementationProvider,
+    InitializeResult, InlayHintProvider, ReferencesProvider, RenameOptions, RenameProvider, Save,
+    SelectionRangeProvider, SemanticTokensLegend, SemanticTokensOptions, SemanticTokensProvider, ServerCapabilities,
+    ServerInfo, SignatureHelpOptions, TextDocumentSync, TextDocumentSyncKind, TextDocumentSyncOptions,
+    TypeDefinitionProvider, TypeHierarchyProvider, WorkspaceSymbolProvider,
 };
 use serde_json::Value as Json;
 
@@ -47,6 +48,11 @@ fn capabilities() -> ServerCapabilities {
             code_action_kinds: Some(vec![CodeActionKind::QuickFix]),
             ..CodeActionOptions::default()
         })),
+        code_lens_provider: Some(CodeLensOptions::default()),
+        execute_command_provider: Some(ExecuteCommandOptions {
+            commands: owned(&[lenses::TEST, lenses::COMPARE]),
+            ..ExecuteCommandOptions::default()
+        }),
         document_formatting_provider: Some(DocumentFormattingProvider::Bool(true)),
         document_range_formatting_provider: Some(DocumentRangeFormattingProvider::Bool(true)),
         rename_provider: Some(RenameProvider::RenameOptions(RenameOptions {

@@ -2,15 +2,16 @@
 
 use super::{Refused, Server};
 use crate::answers::{
-    actions, complete, dialects, folds, hierarchy, hints, layout, navigate, rename, select, signature, symbols, tokens,
+    actions, complete, dialects, folds, hierarchy, hints, layout, lenses, navigate, rename, select, signature, symbols,
+    tokens,
 };
 use crate::place::Place;
 use crate::project::{self, Analysis};
 use crate::uri;
 use gen_lsp_types::{
-    CodeActionParams, DocumentDiagnosticReport, DocumentRangeFormattingParams, FullDocumentDiagnosticReport,
-    InlayHintParams, LspRequestMethod, Position, RelatedFullDocumentDiagnosticReport, RenameParams,
-    SelectionRangeParams, SemanticTokens, TextDocumentIdentifier, TextDocumentPositionParams, Uri,
+    CodeActionParams, DocumentDiagnosticReport, DocumentRangeFormattingParams, ExecuteCommandParams,
+    FullDocumentDiagnosticReport, InlayHintParams, LspRequestMethod, Position, RelatedFullDocumentDiagnosticReport,
+    RenameParams, SelectionRangeParams, SemanticTokens, TextDocumentIdentifier, TextDocumentPositionParams, Uri,
     WorkspaceSymbolParams,
 };
 use lsp_server::ErrorCode;
@@ -20,7 +21,7 @@ use serde_json::Value as Json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-type Answer = Result<Json, Refused>;
+pub(super) type Answer = Result<Json, Refused>;
 
 /// Whether a request is answered when the program has been checked; else it is answered at once.
 pub(super) fn needs_check(method: &LspRequestMethod<'_>) -> bool {
@@ -74,6 +75,15 @@ impl Server<'_> {
             Method::TextDocumentDocumentSymbol => {
                 let (analysis, file) = self.outline(&params)?;
                 json(symbols::outline(&analysis, file))
+            }
+            Method::TextDocumentCodeLens => {
+                let (path, project) = self.document(&params)?;
+                let (analysis, file) = self.outline(&params)?;
+                json(lenses::lenses(&analysis, file, &uri::of(&path), &self.projects[project].results))
+            }
+            Method::WorkspaceExecuteCommand => {
+                let params: ExecuteCommandParams = read(params)?;
+                self.execute(&params.command, params.arguments.unwrap_or_default())
             }
             Method::TextDocumentFoldingRange => {
                 let (path, project) = self.document(&params)?;
@@ -236,11 +246,11 @@ impl Server<'_> {
     }
 }
 
-fn path(uri: &Uri) -> Result<PathBuf, Refused> {
+pub(super) fn path(uri: &Uri) -> Result<PathBuf, Refused> {
     uri::path(uri).ok_or_else(|| Refused::new(ErrorCode::InvalidParams, format!("{uri} is not a file")))
 }
 
-fn read<T: DeserializeOwned>(params: Json) -> Result<T, Refused> {
+pub(super) fn read<T: DeserializeOwned>(params: Json) -> Result<T, Refused> {
     serde_json::from_value(params).map_err(|it| Refused::new(ErrorCode::InvalidParams, it.to_string()))
 }
 

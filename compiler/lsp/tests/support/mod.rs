@@ -7,7 +7,7 @@ pub mod programs;
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value as Json, json};
 use staunch_frontend::{Dialect, Options, Source, Sources, format::Style};
-use staunch_lsp::{Choice, Host, Unit, serve};
+use staunch_lsp::{Choice, Host, TestResult, Unit, Work, serve};
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -46,6 +46,20 @@ impl Host for Folder {
             choice: self.choice.clone(),
         })
     }
+
+    /// Each test passes at once, but for those that have no work, and no result.
+    fn test(&self, _: &Path, title: &str) -> Result<Work<Vec<TestResult>>, String> {
+        let result = TestResult { title: title.to_owned(), outcome: "passed".to_owned() };
+        match title {
+            "refused" => Err("there is no command".to_owned()),
+            "ends early" => Ok(Box::new(|| Ok(Vec::new()))),
+            _ => Ok(Box::new(|| Ok(vec![result]))),
+        }
+    }
+
+    fn compare(&self, _: &Path, from: Dialect, to: Dialect) -> Result<Work<String>, String> {
+        Ok(Box::new(move || Err(format!("{} and {} are two", from.name(), to.name()))))
+    }
 }
 
 pub struct Editor {
@@ -55,6 +69,8 @@ pub struct Editor {
     version: i32,
     /// What was said of each document last.
     pub said: Vec<(String, Vec<Json>)>,
+    /// What the server has asked for.
+    pub wanted: Vec<String>,
 }
 
 impl Editor {
@@ -71,7 +87,8 @@ impl Editor {
             .stack_size(64 << 20)
             .spawn(move || serve(&server, &folder))
             .expect("a thread for the server");
-        let mut editor = Self { connection, server: Some(server), next: 0, version: 1, said: Vec::new() };
+        let mut editor =
+            Self { connection, server: Some(server), next: 0, version: 1, said: Vec::new(), wanted: Vec::new() };
         let capabilities =
             editor.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": capabilities() }));
         assert_eq!(capabilities["capabilities"]["hoverProvider"], json!(true));
@@ -108,6 +125,7 @@ impl Editor {
                     return it.response_result.map_err(|it| it.message);
                 }
                 Message::Notification(it) => self.noted(&it),
+                Message::Request(it) => self.wanted.push(it.method),
                 other => panic!("{other:?}"),
             }
         }
@@ -166,13 +184,14 @@ impl Editor {
         assert_eq!(self.ask("shutdown", Json::Null), Json::Null);
         self.tell("exit", Json::Null);
         let server = self.server.take().expect("it runs");
-        server.join().expect("no panic").expect("it ended as it was told to");
+        server.join().expect("no panic").expect("it ended when it was asked to");
     }
 }
 
 /// Of an editor that makes files.
 fn capabilities() -> Json {
-    json!({ "workspace": { "workspaceEdit": { "documentChanges": true, "resourceOperations": ["create"] } } })
+    let edits = json!({ "documentChanges": true, "resourceOperations": ["create"] });
+    json!({ "workspace": { "workspaceEdit": edits, "codeLens": { "refreshSupport": true } } })
 }
 
 pub fn uri(name: &str) -> String {

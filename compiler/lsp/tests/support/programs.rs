@@ -12,21 +12,20 @@ pub struct Program {
 
 /// The examples and about one case in so many, of those that are accepted.
 pub fn sample(one_in: u32) -> impl Iterator<Item = Program> {
-    let (mut files, mut cases) = (Vec::new(), Vec::new());
-    list(&folder("st_examples"), &mut files);
-    list(&folder("tests/cases"), &mut cases);
-    cases.retain(|it| hash(stem(it)).is_multiple_of(one_in));
-    files.append(&mut cases);
-    // One of several files is another one's part.
-    files.retain(|it| !stem(it).contains('.'));
-    files.into_iter().filter_map(|it| read(&it)).filter(|it| {
+    let mut chosen = files("st_examples");
+    chosen.extend(files("tests/cases").into_iter().filter(|it| hash(stem(it)).is_multiple_of(one_in)));
+    chosen.into_iter().filter_map(|it| read(&it)).filter(|it| {
         let found = check(&it.sources, &it.options);
         found.iter().all(|it| it.severity != staunch_frontend::Severity::Error)
     })
 }
 
-fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(name)
+/// The files of a folder of the project; one of several files of a program is the first one's part.
+pub fn files(folder: &str) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    list(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(folder), &mut files);
+    files.retain(|it| !stem(it).contains('.'));
+    files
 }
 
 fn list(folder: &Path, files: &mut Vec<PathBuf>) {
@@ -41,7 +40,7 @@ fn list(folder: &Path, files: &mut Vec<PathBuf>) {
     }
 }
 
-fn stem(path: &Path) -> &str {
+pub fn stem(path: &Path) -> &str {
     path.file_stem().and_then(|it| it.to_str()).unwrap_or_default()
 }
 
@@ -50,7 +49,7 @@ fn hash(name: &str) -> u32 {
 }
 
 /// As the comments of a case, and the project of an example, have it.
-fn read(path: &Path) -> Option<Program> {
+pub fn read(path: &Path) -> Option<Program> {
     let text = fs::read_to_string(path).ok()?;
     let named = text.lines().map_while(|it| it.strip_prefix("//")).find_map(|it| it.trim().strip_prefix("dialect:"));
     let settings = fs::read_to_string(path.with_file_name("staunch.toml")).unwrap_or_default();

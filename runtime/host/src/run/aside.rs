@@ -1,4 +1,4 @@
-//! What a run in real time tells, its trace and what the program logs, by a thread of its own: the scan's thread copies values into a bounded
+//! The output of a run in real time, its trace and the program's messages, by a thread of its own: the scan's thread copies values into a bounded
 //! ring, and neither writes, waits nor allocates. Rows without room there are counted, and lost.
 
 use super::options::Options;
@@ -36,7 +36,7 @@ struct Shared {
 }
 
 impl Aside {
-    /// `None` where nothing is to be told.
+    /// `None` where there is nothing to write.
     pub fn start(subject: &Subject<'_>, options: &Options, state: &[u8]) -> Result<Option<Self>, Error> {
         let has_trace = options.trace.is_some();
         let messages = if options.quiet && !options.json { Vec::new() } else { Messages::places(subject.map) };
@@ -88,7 +88,7 @@ impl Aside {
         }
     }
 
-    /// Waits until all is told; the rows that are lost.
+    /// Waits until all is written; the number of rows that are lost.
     pub fn finish(self) -> u64 {
         self.shared.ends.store(true, Ordering::Release);
         self.thread.thread().unpark();

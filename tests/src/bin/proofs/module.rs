@@ -1,4 +1,4 @@
-//! A program's Rust as a module of a crate, beside others.
+//! A program's Rust as a module of a crate, together with others.
 
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;

@@ -45,8 +45,8 @@ fn lines_are_in_the_executable() {
     folder.staunch("build main.st -o plant -q").out(0);
     let ran = std::process::Command::new(folder.0.join("plant")).args(["--realtime", "--scans", "2"]).output().unwrap();
     let refused = crate::Ran::of(ran).err(2);
-    has(&refused, &["error: gpio: gpiochip77: there is no such chip: "]);
-    has(&folder.staunch("run main.st --realtime --scans 2").err(2), &["gpio: gpiochip77: there is no such chip: "]);
+    has(&refused, &["error: gpio: gpiochip77: no such chip: "]);
+    has(&folder.staunch("run main.st --realtime --scans 2").err(2), &["gpio: gpiochip77: no such chip: "]);
     // On the virtual clock nothing is connected.
     folder.staunch("run main.st --scans 2").out(0);
 }

@@ -305,13 +305,13 @@ fn a_port_that_vanishes_is_opened_again() {
     until("unit 3 is written again", || units.ask("3 get hr 30")[0] == 1236);
     until("unit 5 is written again", || units.ask("5 get hr 30")[0] == 4322);
     plant.signal("-TERM");
-    has(&plant.ended(0), &["there is no such port; inputs are 0 and FALSE", "it answers again, after "]);
+    has(&plant.ended(0), &["no such port; inputs are 0 and FALSE", "it answers again, after "]);
 }
 
 #[test]
 fn a_port_that_a_run_needs_ends_it() {
     let folder = Folder::with("io_serial_fault", &[("main.st", PLANT)]);
-    for (port, expected) in [("/nowhere/tty", "there is no such port"), ("/dev/null", "it is not a serial port")] {
+    for (port, expected) in [("/nowhere/tty", "no such port"), ("/dev/null", "it is not a serial port")] {
         let settings =
             format!("[[modbus]]\nport = \"{port}\"\non-loss = \"fault\"\n[modbus.map]\nlevel = \"coil 0\"\n");
         folder.write("staunch.toml", settings.replace("coil", "input-register"));

@@ -174,7 +174,7 @@ fn not_opened(error: &io::Error) -> String {
             } else {
                 format!("there are {}", found.join(", "))
             };
-            format!("there is no such chip: {found}")
+            format!("no such chip: {found}")
         }
         ErrorKind::PermissionDenied => {
             "this user may not open it: add the user to its group, which is often `gpio`: sudo usermod -aG gpio USER"

@@ -190,7 +190,7 @@ impl Port for Serial {
 
 fn explained(error: &io::Error) -> io::Error {
     match error.kind() {
-        ErrorKind::NotFound => io::Error::other("there is no such port"),
+        ErrorKind::NotFound => io::Error::other("no such port"),
         ErrorKind::PermissionDenied => {
             io::Error::other("this user may not open the port: add the user to its group, which is often `dialout`")
         }

@@ -157,7 +157,7 @@ pub(super) fn see(bytes: &[u8], unit: u8, served: &Served, answer: &mut Vec<u8>)
     }
 }
 
-/// Whether a request to all units may have the function: there is no answer to read anything from.
+/// Whether a request to all units may have the function: nobody answers it.
 fn is_write(code: u8) -> bool {
     matches!(code, function::WRITE_COIL | function::WRITE_REGISTER | function::WRITE_COILS | function::WRITE_REGISTERS)
 }

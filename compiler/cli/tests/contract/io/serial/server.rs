@@ -152,7 +152,7 @@ fn a_wrong_unit_is_refused() {
     let folder = built("io_rtu_server_wrong", PLANT);
     let run = |io: &str| folder.staunch(&format!("run main.st --realtime --scans 1 --io {io}")).err(2);
     has(&run("modbus-rtu:/dev/null"), &["cannot serve on /dev/null (--io modbus-rtu): it is not a serial port"]);
-    has(&run("modbus-rtu:/nowhere/tty"), &["cannot serve on /nowhere/tty (--io modbus-rtu): there is no such port"]);
+    has(&run("modbus-rtu:/nowhere/tty"), &["cannot serve on /nowhere/tty (--io modbus-rtu): no such port"]);
     has(&run("modbus-rtu:ttyS0"), &["`ttyS0` is not the path of a serial port"]);
     has(&run("modbus-rtu:/dev/ttyS0,unit=0"), &["`0` is not a unit from 1 to 247"]);
 }

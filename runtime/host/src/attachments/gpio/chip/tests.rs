@@ -106,7 +106,7 @@ fn a_request_has_the_settings() {
 #[test]
 fn what_cannot_be_opened_is_explained() {
     let open = |chip: &str| Kernel.open(&Group { chip: chip.to_owned(), ..group(false) }).err().unwrap();
-    assert!(open("gpiochip77").starts_with("there is no such chip: "), "{}", open("gpiochip77"));
+    assert!(open("gpiochip77").starts_with("no such chip: "), "{}", open("gpiochip77"));
     assert_eq!(open("/dev/null"), "it is not a GPIO chip");
     let refused = not_opened(&ErrorKind::PermissionDenied.into());
     assert!(refused.contains("sudo usermod -aG gpio USER"), "{refused}");
