@@ -20,7 +20,10 @@ pub(crate) const STARTED_UP: &str = "__started_up";
 /// The ENO of each instance whose ENO is read.
 pub(crate) const ENOS: &str = "__enos";
 
+/// What the calls of EDGEPOS and its like were given last.
+pub(crate) const EDGES: &str = "__edges";
+
 pub(crate) fn is_added(name: &str) -> bool {
     let pairs = [STARTED, KEPT, ADDRESSED];
-    pairs.iter().flatten().chain(&[RETAINS, CLOCK, ACTIONS, FIRED, STARTED_UP, ENOS]).any(|it| *it == name)
+    pairs.iter().flatten().chain(&[RETAINS, CLOCK, ACTIONS, FIRED, STARTED_UP, ENOS, EDGES]).any(|it| *it == name)
 }

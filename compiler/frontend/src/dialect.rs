@@ -293,12 +293,17 @@ impl Dialect {
 
     /// The internal variables of an instance may be read from outside.
     pub const fn shows_inner_variables(self) -> bool {
-        matches!(self, Self::Codesys)
+        matches!(self, Self::Codesys | Self::Openplc)
     }
 
-    /// They may be written from outside, too: those of an instance DB.
+    /// They may be written from outside, too: those of an instance DB, and in MATIEC all but outputs (`lvalue_check.cc`).
     pub const fn writes_inner_variables(self) -> bool {
-        matches!(self, Self::Siemens)
+        matches!(self, Self::Siemens | Self::Openplc)
+    }
+
+    /// `Press.MOST`, a CONSTANT by the name of its POU.
+    pub const fn names_constants_of_units(self) -> bool {
+        matches!(self, Self::Codesys)
     }
 
     /// ADR takes a CONSTANT, and a BIT of a UNION.

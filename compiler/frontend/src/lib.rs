@@ -213,7 +213,7 @@ fn run_with(
 ) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
     log.index = index.as_ref().map(|it| Recorder::new(it.asked, it.stop.clone()));
-    let Some(files) = parse_all(sources, &mut log.diagnostics) else {
+    let Some(files) = parse_all(sources, options, &mut log.diagnostics) else {
         return Some(Compilation::rejected(log.diagnostics));
     };
     if let Some(index) = &mut index {
@@ -306,7 +306,9 @@ struct Trees<'s> {
 
 fn write_out<'s>(mut files: Vec<ast::File<'s>>, log: &mut Log<'s>) -> Trees<'s> {
     let sources = log.sources;
-    automation_studio::expand(&mut files, sources);
+    let dialect = log.options.dialect;
+    automation_studio::expand(&mut files, sources, &|it| names::functions::is_in_the_library(it, dialect));
+    files.iter_mut().flat_map(|it| std::mem::take(&mut it.apart)).for_each(|it| log.report(it.1));
     let stubs = library::prepare(&mut files, sources);
     stubs.refused.iter().for_each(|it| log.report(library::c_code(*it)));
     let has_tests = testing::has_tests(&files);
@@ -384,14 +386,15 @@ const MANY_BYTES: usize = 128 << 10;
 type Parsed<'s> = (ast::File<'s>, Vec<Diagnostic>);
 
 /// Parses each file that is to be; `None` for the others.
-fn parse_each(sources: &Sources) -> Vec<Option<Parsed<'_>>> {
+fn parse_each<'s>(sources: &'s Sources, options: &Options) -> Vec<Option<Parsed<'s>>> {
     let files = sources.files();
     let parse = |at: usize| {
         let (source, number) = (&files[at], u16::try_from(at).unwrap_or(u16::MAX));
         let is_parsed = !source.is_expression() && !is_incomplete(source);
         is_parsed.then(|| {
             let mut found = Vec::new();
-            let file = parse::parse_with(number, &source.text, sources.defined(source), Known::Later, &mut found);
+            let habits = options.habits(sources, source);
+            let file = parse::parse_with(number, &source.text, habits, Known::Later, &mut found);
             (file, found)
         })
     };
@@ -407,11 +410,17 @@ fn is_incomplete(source: &Source) -> bool {
 }
 
 /// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
-fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Option<Vec<ast::File<'s>>> {
+fn parse_all<'s>(
+    sources: &'s Sources,
+    options: &Options,
+    diagnostics: &mut Vec<Diagnostic>,
+) -> Option<Vec<ast::File<'s>>> {
     let mut foreign = Vec::new();
     let mut files = Vec::new();
     let mut is_broken = false;
-    for ((source, number), parsed) in sources.files().iter().zip(0u16..).zip(parse_each(sources)) {
+    // No file there is of another system, whatever its comments look like.
+    let is_of_studio = sources.is_of_automation_studio();
+    for ((source, number), parsed) in sources.files().iter().zip(0u16..).zip(parse_each(sources, options)) {
         if source.is_expression() {
             files.push(ast::File::default());
             continue;
@@ -429,7 +438,7 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
         let unclosed = files.last_mut().map(|it| it.unclosed.as_mut_slice()).unwrap_or_default();
         unclosed.iter_mut().for_each(|it| at_the_end_of_a_body(it, source));
         let is_wrong = !unclosed.is_empty() || diagnostics[before..].iter().any(|it| it.severity == Severity::Error);
-        if !source.is_assembled() && (is_wrong || foreign::is_json(source)) {
+        if !source.is_assembled() && !is_of_studio && (is_wrong || foreign::is_json(source)) {
             foreign.extend(foreign::recognise(number, source));
         }
     }
@@ -444,12 +453,17 @@ fn parse_all<'s>(sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) -> Opt
         diagnostics.retain(|it| it.code == Code::E0033 || !is_undecided(it.span.file));
         return None;
     }
-    decide_later(&mut files, sources, diagnostics);
+    decide_later(&mut files, sources, options, diagnostics);
     Some(files)
 }
 
 /// Reads the files once more whose conditions ask for what is declared.
-fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnostics: &mut Vec<Diagnostic>) {
+fn decide_later<'s>(
+    files: &mut [ast::File<'s>],
+    sources: &'s Sources,
+    options: &Options,
+    diagnostics: &mut Vec<Diagnostic>,
+) {
     if files.iter().all(|it| it.undecided.is_empty()) {
         return;
     }
@@ -457,7 +471,7 @@ fn decide_later<'s>(files: &mut [ast::File<'s>], sources: &'s Sources, diagnosti
     for (file, number) in files.iter_mut().zip(0u16..).filter(|(it, _)| !it.undecided.is_empty()) {
         let source = sources.get(number);
         let read = |known, diagnostics: &mut Vec<Diagnostic>| {
-            parse::parse_with(number, &source.text, sources.defined(source), known, diagnostics)
+            parse::parse_with(number, &source.text, options.habits(sources, source), known, diagnostics)
         };
         let mut found = Vec::new();
         let first = std::mem::replace(file, read(Known::All(&known), &mut found));

@@ -35,6 +35,12 @@ pub(crate) fn prepare(files: &mut [File<'_>], sources: &Sources) -> Stubs {
             }
         }
         if !source.is_of_library() && !source.only_declares() {
+            // What Automation Studio declares of its libraries.
+            let own = file.items.iter().filter_map(|it| match it {
+                Item::Pou(pou) if pou.is_stub => Some(pou.name.span),
+                Item::Pou(_) | Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_) => None,
+            });
+            stubs.names.extend(own);
             continue;
         }
         file.items.retain(|it| match it {

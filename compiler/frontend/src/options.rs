@@ -1,6 +1,8 @@
 //! How a program is read.
 
 use crate::dialect::Dialect;
+use crate::source::{Comments, Habits};
+use crate::{Source, Sources};
 use staunch_ir::{BlockId, Location, Part, Use, Uses};
 use staunch_runtime::{BLOCKS, BlockOption};
 
@@ -58,6 +60,15 @@ pub struct AskedAt {
 }
 
 impl Options {
+    /// What is known of a file before it is read, its dialect among it, unless the file names another.
+    pub(crate) fn habits<'s>(&self, sources: &'s Sources, source: &Source) -> Habits<'s> {
+        let own = sources.habits(source);
+        match own.comments {
+            Comments::Plain => own,
+            Comments::Nested => Habits { comments: Comments::of_dialect(self.dialect.name()), ..own },
+        }
+    }
+
     pub fn is_on(&self, option: BlockOption) -> bool {
         match option {
             BlockOption::CtuStopAtPv => self.ctu_stop_at_pv,

@@ -5,10 +5,12 @@ mod index;
 mod tcunit;
 mod vendor;
 
+use crate::automation_studio::EDGES;
 use crate::dialect::Dialect;
 use crate::dialect::library::{is_one_of, leads_to};
 use crate::lex::{Kind, Known, Tokens, lex_with};
 use crate::options::Options;
+use crate::source::Habits;
 use crate::{Code, Diagnostic, Severity, Source, Sources, Span};
 use rustc_hash::FxHashSet;
 use staunch_runtime::Class;
@@ -391,6 +393,9 @@ pub const UNITS: &[Unit] = units! {
     Type     "__MatiecChart"    "matiec_chart"     [Openplc] "__MatiecStep" "__MatiecAction";
     Type     "__MatiecStep"     "matiec_chart_step" [Openplc];
     Type     "__MatiecAction"   "matiec_chart_action" [Openplc];
+    Function "__EDGEPOS"        "edgepos";
+    Function "__EDGENEG"        "edgeneg";
+    Function "__EDGE"           "edge";
     Type     "IEC_TIMER"        "iec_timer"        [Siemens];
     Function "RESET_TIMER"      "reset_timer"      [Siemens] "IEC_TIMER";
     Type     "IEC_COUNTER"      (counter!(IEC_COUNTER, INT))       [Siemens];
@@ -461,7 +466,7 @@ pub const UNITS: &[Unit] = units! {
 };
 
 /// What asks for a unit by another name than its own; so do the names of classes of types.
-const ASKING: [&str; 5] = [SYSTEM, INITIAL_STEP, "TypeClass", "pValue", "diSize"];
+const ASKING: [&str; 8] = [SYSTEM, INITIAL_STEP, "TypeClass", "pValue", "diSize", EDGES[0].0, EDGES[1].0, EDGES[2].0];
 
 static LENGTHS: index::Lengths = {
     let mut lengths = [0; 1024];
@@ -581,7 +586,7 @@ fn with_own_names(text: &str, taken: &[&str]) -> String {
     if taken.is_empty() {
         return text.to_owned();
     }
-    let tokens = lex_with(0, text, &[], Known::Never);
+    let tokens = lex_with(0, text, Habits::default(), Known::Never);
     let mut made = String::with_capacity(text.len());
     let mut copied = 0;
     for (at, (kind, place)) in tokens.kinds.iter().zip(&tokens.places).enumerate() {
@@ -609,7 +614,7 @@ impl Extended {
         let mut uses = Uses::default();
         for (source, number) in sources.files().iter().zip(0u16..) {
             if mentions_any(&source.text, options.dialect) {
-                uses.read(number, source, sources.defined(source), options);
+                uses.read(number, source, options.habits(sources, source), options);
             }
         }
         let named = uses.needed();
@@ -670,9 +675,10 @@ struct Uses {
 }
 
 impl Uses {
-    fn read(&mut self, file: u16, source: &Source, defined: &[String], options: &Options) {
+    fn read(&mut self, file: u16, source: &Source, habits: Habits<'_>, options: &Options) {
         let text = source.text.as_str();
-        let tokens = lex_with(file, text, defined, Known::Never);
+        let is_of_studio = habits.is_of_studio;
+        let tokens = lex_with(file, text, habits, Known::Never);
         let dialect = dialect_of(&tokens, options);
         let mut types = TypeBlock::default();
         let mut heads = Heads::default();
@@ -695,7 +701,9 @@ impl Uses {
             let begins_chart =
                 word(at).eq_ignore_ascii_case(INITIAL_STEP) && tokens.kinds.get(at + 1) == Some(&Kind::Name);
             let any = hands_on_any.then_some(ANY);
-            for name in any.into_iter().chain(CHARTS.into_iter().filter(|_| begins_chart)) {
+            let is_edge = |it: &(&str, &str)| is_of_studio && word(at).eq_ignore_ascii_case(it.0);
+            let edge = EDGES.iter().find(|it| is_edge(it)).map(|it| it.1);
+            for name in any.into_iter().chain(edge).chain(CHARTS.into_iter().filter(|_| begins_chart)) {
                 self.named.extend(unit(name, dialect).map(|unit| Named {
                     unit,
                     at: Span { file, start, end },

@@ -44,6 +44,8 @@ pub struct File<'s> {
     pub nonretentive: Vec<Span>,
     /// The braces before code in C, `{{ … }}`.
     pub c_code: Vec<Span>,
+    /// ACTIONs that no unit is before, each with what is reported where it is of none.
+    pub apart: Vec<(Pou<'s>, crate::Diagnostic)>,
 }
 
 /// One test of the METHOD or FUNCTION after it, as Siemens AX has them.

@@ -18,7 +18,7 @@ pub use scan::Scanner;
 use crate::{
     ast::Name,
     diagnostic::{Code, Diagnostic},
-    source::Span,
+    source::{Comments, Habits, Span},
 };
 
 /// Errors of one file after which reading stops.
@@ -45,18 +45,26 @@ pub struct Tokens<'s> {
 
 /// Reads a text of at most `u32::MAX` bytes.
 pub fn lex(file: u16, text: &str) -> Tokens<'_> {
-    lex_with(file, text, &[], Known::Never)
+    lex_with(file, text, Habits::default(), Known::Never)
 }
 
-/// The same, where a project defines names for conditional compilation, and some is known of what is declared.
-pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Known<'_, 's>) -> Tokens<'s> {
+/// The same, where something is known of the file, and of what is declared.
+pub fn lex_with<'s>(file: u16, text: &'s str, habits: Habits<'s>, known: Known<'_, 's>) -> Tokens<'s> {
     // Real programs have a token for each five bytes or so.
     let guess = text.len() / 4 + 16;
     let tokens = Tokens { kinds: Vec::with_capacity(guess), places: Vec::with_capacity(guess), ..Tokens::default() };
-    let mut reading = Reading { file, text, tokens, named: Vec::new(), unknown: false, has_external: false };
+    let comments = habits.comments;
+    let mut reading = Reading { file, text, tokens, comments, named: Vec::new(), unknown: false, has_external: false };
     let mut scanner = Scanner::new(text);
+    scanner.end_comments(comments);
     while let Some(kind) = scanner.next() {
         let range = scanner.span();
+        if kind == Kind::Pragma
+            && let Some(dialect) = dialect_named(&text[range.clone()])
+        {
+            reading.comments = Comments::of_dialect(dialect);
+            scanner.end_comments(reading.comments);
+        }
         reading.token(kind, (offset(range.start), offset(range.end)));
         if reading.tokens.diagnostics.len() >= MAX_REPORTS {
             reading.tokens.cut = true;
@@ -65,14 +73,23 @@ pub fn lex_with<'s>(file: u16, text: &'s str, defined: &'s [String], known: Know
     }
     let end = offset(text.len());
     reading.push(Kind::End, (end, end));
-    conditional::choose(&mut reading.tokens, defined, known);
+    conditional::choose(&mut reading.tokens, habits.defined, known);
     reading.tokens
+}
+
+/// The name in `{dialect 'openplc'}`.
+fn dialect_named(pragma: &str) -> Option<&str> {
+    let words = pragma.strip_prefix('{')?.strip_suffix('}')?.trim();
+    let (word, name) = words.split_at_checked("dialect".len())?;
+    let name = name.trim();
+    word.eq_ignore_ascii_case("dialect").then(|| name.trim_matches(['\'', '"']))
 }
 
 struct Reading<'s> {
     file: u16,
     text: &'s str,
     tokens: Tokens<'s>,
+    comments: Comments,
     /// Names with letters that names cannot have: each is reported once.
     named: Vec<&'s str>,
     /// The last token is a run of unknown characters.
@@ -112,10 +129,10 @@ impl<'s> Reading<'s> {
     fn comment(&mut self, place: (u32, u32)) {
         self.tokens.comments.push(place);
         let opening = self.slice(place);
-        if index(place.1) == self.text.len() && !comment::is_closed(opening) {
+        if index(place.1) == self.text.len() && !comment::is_closed(opening, self.comments) {
             let (open, close) = if opening.starts_with("(*") { ("(*", "*)") } else { ("/*", "*/") };
             let mut it = self.unclosed(place, 2, "the comment", open, close);
-            if open == "(*" {
+            if open == "(*" && self.comments == Comments::Nested {
                 it = it.note("comments nest: each `(*` needs its own `*)`");
             }
             self.tokens.diagnostics.push(it);

@@ -55,7 +55,7 @@ use crate::{
     ast::{Expr, File},
     diagnostic::{Code, Diagnostic, Severity},
     lex::{Kind, Known, lex_with},
-    source::{Sources, Span},
+    source::{Habits, Sources, Span},
 };
 
 pub use diagnostics::{address_without_sign, controller_service, reserved};
@@ -64,20 +64,20 @@ pub use pragma::attribute;
 
 /// The tree of a file. What does not parse is reported, and left out of the tree.
 pub fn parse<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> File<'s> {
-    parse_with(file, text, &[], Known::Never, diagnostics)
+    parse_with(file, text, Habits::default(), Known::Never, diagnostics)
 }
 
 /// The tree of one of these files, with what its project defines. What does not parse is left out.
 pub fn parse_file(sources: &Sources, number: u16) -> File<'_> {
     let source = sources.get(number);
-    parse_with(number, &source.text, sources.defined(source), Known::Never, &mut Vec::new())
+    parse_with(number, &source.text, sources.habits(source), Known::Never, &mut Vec::new())
 }
 
-/// The same, where a project defines names for conditional compilation, and some is known of what is declared.
+/// The same, where something is known of the file, and of what is declared.
 pub fn parse_with<'s>(
     file: u16,
     text: &'s str,
-    defined: &'s [String],
+    habits: Habits<'s>,
     known: Known<'_, 's>,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> File<'s> {
@@ -86,13 +86,14 @@ pub fn parse_with<'s>(
         diagnostics.push(Diagnostic::new(Code::E0031, span, "the file is larger than 4 GiB"));
         return File::default();
     }
-    let mut tokens = lex_with(file, text, defined, known);
-    invalid_names::mend(&mut tokens, text, file);
-    let mut state = State::new(file, text, &tokens, namespace::file(file, text));
+    let mut tokens = lex_with(file, text, habits, known);
+    invalid_names::mend(&mut tokens, text, file, habits.is_of_studio);
+    let has_access = habits.is_of_studio;
+    let mut state = State { has_access, ..State::new(file, text, &tokens, namespace::file(file, text)) };
     let items = parse_items(&mut state);
     let (mut found, braces, regions, bindings) = (state.diagnostics, state.braces, state.regions, state.bindings);
     let (combined, nonretentive, late_addresses) = (state.combined, state.nonretentive, state.late_addresses);
-    let unclosed = state.unclosed;
+    let (unclosed, apart) = (state.unclosed, state.apart);
     found.append(&mut tokens.diagnostics);
     tokens.pragmas.retain(|it| !braces.contains(&it.span));
     let test_pragmas = test_pragma::read(file, text, &tokens.pragmas, &mut found);
@@ -112,12 +113,13 @@ pub fn parse_with<'s>(
         late_addresses,
         nonretentive,
         c_code,
+        apart,
     }
 }
 
 /// The expression that is all of a text. `None` where it does not parse, which is reported.
 pub fn parse_expression<'s>(file: u16, text: &'s str, diagnostics: &mut Vec<Diagnostic>) -> Option<Expr<'s>> {
-    let mut tokens = lex_with(file, text, &[], Known::Never);
+    let mut tokens = lex_with(file, text, Habits::default(), Known::Never);
     let mut state = State { is_expression: true, ..State::new(file, text, &tokens, namespace::file(file, text)) };
     let kinds: &[Kind] = &state.tokens.kinds;
     let expr = whole_expression(kinds, &mut state);

@@ -1,9 +1,13 @@
 //! Source files, and positions in them. A text may be made of pieces of a file: what it says of places is said
 //! of the file.
 
+mod habits;
+
 use crate::vendor::{self, Assembly, Device, Piece, Problem, Reference};
 use core::sync::atomic::{AtomicUsize, Ordering};
 use staunch_runtime::Location;
+
+pub use habits::{Comments, Habits};
 
 /// Bytes `start..end` of file number `file`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -120,6 +124,8 @@ pub struct Sources {
     project: Option<String>,
     /// What a project of OpenPLC Editor says of its device.
     device: Option<Device>,
+    /// One of the files is a list of B&R's Automation Studio.
+    is_of_studio: bool,
 }
 
 impl Source {
@@ -493,6 +499,21 @@ impl Sources {
         if source.is_of_library() { &[] } else { &self.defined }
     }
 
+    /// What is known of a file before it is read.
+    pub fn habits(&self, source: &Source) -> Habits<'_> {
+        let is_of_studio = !source.is_bundled && self.is_of_automation_studio();
+        Habits {
+            defined: self.defined(source),
+            comments: if is_of_studio { Comments::Plain } else { Comments::Nested },
+            is_of_studio,
+        }
+    }
+
+    /// Whether the files are those of a program of B&R's Automation Studio: no other system has files that are called as its lists are.
+    pub const fn is_of_automation_studio(&self) -> bool {
+        self.is_of_studio
+    }
+
     /// The device of a project of OpenPLC Editor, where the files are of one.
     pub const fn device(&self) -> Option<&Device> {
         self.device.as_ref()
@@ -556,7 +577,7 @@ impl Sources {
         let unsaid = dialect.filter(|_| !own.iter().any(|it| it.text.contains("{dialect ")));
         let text = unsaid.map(|it| format!("{{dialect '{it}'}}\n")).unwrap_or_default() + &text;
         let files = core::iter::once(Source::new(path, text)).chain(others.into_iter().cloned());
-        Self { files: files.collect(), defined: Vec::new(), device: None, ..self.clone() }
+        Self { files: files.collect(), defined: Vec::new(), device: None, is_of_studio: false, ..self.clone() }
     }
 
     /// Adds a file; its number is its position.
@@ -565,6 +586,7 @@ impl Sources {
         if let Some(device) = device.filter(|_| !source.is_of_library()) {
             self.device.get_or_insert_default().merge(device);
         }
+        self.is_of_studio |= vendor::is_list_of_automation_studio(&source.path);
         self.files.push(source);
     }
 

@@ -18,6 +18,7 @@ mod unit;
 mod xml;
 
 pub use assembly::{Assembly, Piece, Problem, Trouble};
+pub use automation_studio::is_list as is_list_of_automation_studio;
 pub use device::Device;
 pub use l5x::{controller_service, ladder_instructions};
 pub use listing::{Reference, definitions, listed, project_name, project_title, references};

@@ -322,3 +322,15 @@ fn a_project_in_one_file_of_xml_is_read_once() {
     std::fs::remove_file(folder.0.join("beremiz.xml")).unwrap();
     has(&folder.staunch("check . --dialect openplc").err(0), &["Checked build/plc.st\n"]);
 }
+
+/// MATIEC's comments end at the first `*)`, whether the file, the command or the settings name the dialect.
+#[test]
+fn comments_end_as_the_dialect_has_it() {
+    let text = "PROGRAM Main VAR_OUTPUT y : INT; END_VAR\n(* (* *) y := y + 1; (* *)\nEND_PROGRAM\n";
+    let folder = Folder::with("comments_of_matiec", &[("a.st", text)]);
+    let run = "run a.st --scans 1 --vars y --trace - --dialect";
+    assert_eq!(folder.staunch(&format!("{run} openplc")).out(0), "scan,time_ms,y\n1,0,1\n");
+    has(&folder.staunch(&format!("{run} openplc4")).err(1), &["a.st:2:1", "comments nest"]);
+    folder.write("staunch.toml", "files = [\"a.st\"]\ndialect = \"openplc\"\n");
+    assert_eq!(folder.staunch("run --scans 1 --vars y --trace -").out(0), "scan,time_ms,y\n1,0,1\n");
+}

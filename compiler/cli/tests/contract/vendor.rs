@@ -450,3 +450,81 @@ fn programs_of_automation_studio_are_folders() {
         .write("Press/Variables.var", "VAR\n\tstep : INT := 3;\nEND_VAR\nVAR CONSTANT\n\tMOST : INT := 6;\nEND_VAR\n");
     has(&folder.staunch("check .").err(1), &["Press/Main.st:8:", "`ramp`"]);
 }
+
+/// What the files of Automation Studio have that no other system has, with the values that the C has which it makes of them.
+#[test]
+fn automation_studio_has_its_own_words() {
+    let folder =
+        Folder::with("automation_studio_words", &[("Modes.typ", MODES), ("Global.var", "VAR gMode : Mode; END_VAR")]);
+    for name in ["Operator", "Lib", "Press", "Mill"] {
+        std::fs::create_dir_all(folder.0.join(name)).unwrap();
+    }
+    folder.write("Operator/Operator.fun", OPERATOR);
+    folder.write("Lib/Lib.fun", LIB);
+    folder.write("Lib/Lib.st", LIB_BODY);
+    folder.write("Press/Press.var", PRESS);
+    folder.write("Press/Press.st", PRESS_BODY);
+    folder.write("Press/Work.st", "ACTION Work:\n\tworked := worked + 1;\nEND_ACTION\n");
+    folder.write("Press/Press.typ", "TYPE Local : STRUCT a : INT; END_STRUCT; END_TYPE");
+    folder
+        .write("Mill/Mill.typ", "TYPE Local : STRUCT b : STRING[MOST]; inner : INT; Inner : INT; END_STRUCT; END_TYPE");
+    folder.write(
+        "Mill/Mill.var",
+        "VAR it : Local := (0); END_VAR VAR CONSTANT MOST : INT := 3; LEAST : INT := 1; END_VAR",
+    );
+    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tit.b := 'abcd';\n\tit.inner := MOST - LEAST;\nEND_PROGRAM\n");
+    let vars = "Press.worked,Press.rises,Press.falls,Press.changes,Press.number,Press.reader.Type,Press.sample.Type";
+    for backend in ["interpret", "native", "rust"] {
+        let run =
+            format!("run . --program Press --dialect codesys --backend {backend} --scans 4 --vars {vars} --trace -");
+        assert_eq!(folder.staunch(&run).out(0), WORDS_TRACE, "{backend}");
+    }
+    let trace = folder
+        .staunch("run . --program Mill --dialect codesys --scans 1 --vars Mill.it.b,Mill.it.inner --trace -")
+        .out(0);
+    assert_eq!(trace, "scan,time_ms,Mill.it.b,Mill.it.inner\n1,0,abc,2\n");
+    // Which of two members is meant is not known where their names differ by capitals alone.
+    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tit.Inner := 1;\nEND_PROGRAM\n");
+    has(&folder.staunch("check . --dialect codesys").err(1), &["Mill/Mill.typ:1:", "`Inner` is declared twice"]);
+    // A call of what has no body is refused where the program is built.
+    folder
+        .write("Lib/Lib.fun", format!("{LIB}FUNCTION memcpy : UDINT VAR_INPUT pDest : UDINT; END_VAR END_FUNCTION\n"));
+    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tmemcpy(ADR('ab'));\nEND_PROGRAM\n");
+    folder.staunch("check . --dialect codesys").out(0);
+    has(&folder.staunch("run . --program Mill --dialect codesys --scans 1").err(1), &["Mill/Mill.st:2:", "`memcpy`"]);
+    // What an address is that is a number is not known before the program runs.
+    folder.write("Mill/Mill.var", "VAR it : REFERENCE TO Local; address : UDINT; END_VAR");
+    folder.write("Mill/Mill.st", "PROGRAM _CYCLIC\n\tit ACCESS address;\nEND_PROGRAM\n");
+    has(&folder.staunch("check . --dialect codesys").err(1), &["Mill/Mill.st:2:", "after ACCESS"]);
+    // An ACTION needs a program in its folder.
+    folder.write("Lib/Work.st", "ACTION Work:\nEND_ACTION\n");
+    has(&folder.staunch("check . --dialect codesys").err(1), &["Lib/Work.st:1:", "ACTION"]);
+}
+
+/// A comment ends at the first `*)`, and one that looks like SCL's names is a comment.
+const MODES: &str = "TYPE\n\tMode : (mOFF, mBIG := 70000); (*which (*it is*) (* *) (*#CMD#;*)\n\
+     Sample : STRUCT Type : INT; (*#PAR#;*) Continue : BOOL; Until : INT; Constant : INT; END_STRUCT;\n\
+     logRead : STRUCT a : INT; END_STRUCT;\nEND_TYPE\n";
+const OPERATOR: &str = "{REDUND_OK} FUNCTION AND : ANY VAR_INPUT IN1 : ANY; IN2 : ANY; END_VAR END_FUNCTION\n\
+     {REDUND_OK} FUNCTION EDGEPOS : BOOL VAR_INPUT IN : BOOL; END_VAR END_FUNCTION\n\
+     {REDUND_OK} FUNCTION MAX : ANY VAR_INPUT IN1 : ANY; IN2 : ANY; END_VAR END_FUNCTION\n\
+     {REDUND_OK} FUNCTION_BLOCK TON VAR_INPUT IN : BOOL; PT : TIME; END_VAR VAR_OUTPUT Q : BOOL; ET : TIME; END_VAR VAR \
+     M : BOOL; END_VAR END_FUNCTION_BLOCK\n\
+     FUNCTION st_ident : UINT VAR_INPUT ST_ident : {REDUND_UNREPLICABLE} UDINT; END_VAR END_FUNCTION\n";
+const LIB: &str = "{REDUND_ERROR} FUNCTION_BLOCK Reader VAR_INPUT Source : REFERENCE TO Sample; END_VAR VAR_OUTPUT Type : INT; \
+     END_VAR VAR edges : INT; END_VAR END_FUNCTION_BLOCK\n\
+     FUNCTION_BLOCK LogRead VAR_INPUT on : BOOL; END_VAR VAR inner : logRead; END_VAR END_FUNCTION_BLOCK\n";
+const LIB_BODY: &str = "FUNCTION_BLOCK Reader\n\tType := Source.Type + 1;\n\tIF EDGEPOS(Type > 5) THEN edges := edges + 1; END_IF\n\
+     Source.Continue := edges > 0;\nEND_FUNCTION_BLOCK\n";
+const PRESS: &str = "VAR\n\tworked, rises, falls, changes : INT; number : DINT; toggles : BOOL; sample : Sample := (0);\n\
+     this : REFERENCE TO Sample; reader : Reader; local : Local; entry : logRead; unused : LogRead; END_VAR\n";
+/// `toggles` is TRUE, FALSE, TRUE, FALSE: a call that is not reached keeps what it was given last.
+const PRESS_BODY: &str = "PROGRAM _INIT\n\tthis ACCESS ADR(sample);\n\treader.Source := ADR(sample);\nEND_PROGRAM\n\
+     PROGRAM _CYCLIC\n\ttoggles := NOT toggles;\n\tIF EDGEPOS(toggles) THEN rises := rises + 1; END_IF\n\
+     IF EDGENEG(toggles) THEN falls := falls + 1; END_IF\n\
+     CASE worked OF 0: Work; 1: Work(); END_CASE\n\
+     IF EDGE(toggles) OR EDGEPOS(worked > 1) THEN changes := changes + 1; END_IF\n\
+     gMode := mBIG;\n\tnumber := gMode + 1;\n\tentry.a := 5;\n\tthis.Type := MAX(4, worked + entry.a);\n\treader();\n\
+     FOR local.a := 0 TO 9 DO IF this.Continue THEN EXIT; END_IF END_FOR\nEND_PROGRAM\n";
+const WORDS_TRACE: &str = "scan,time_ms,Press.worked,Press.rises,Press.falls,Press.changes,Press.number,Press.reader.Type,\
+     Press.sample.Type\n1,0,1,1,0,1,70001,7,6\n2,10,2,1,1,2,70001,8,7\n3,20,2,2,1,3,70001,8,7\n4,30,2,2,2,4,70001,8,7\n";

@@ -216,6 +216,9 @@ impl<'s> Checker<'_, 's> {
         if let Some((text, index)) = self.character_of(target) {
             return self.assign_character(text, index, value, span);
         }
+        if let Some(bound) = self.address_for_reference(target, value, span) {
+            return bound;
+        }
         self.refuse_address_assigned(target, value)?;
         if self.is_run() {
             self.check_binding(target, value)?;

@@ -23,6 +23,11 @@ struct Runs {
     len: u64,
 }
 
+/// `(0)`; `0` as an element.
+fn is_zero(expr: &ast::Expr<'_>) -> bool {
+    matches!(&expr.bare().kind, ast::ExprKind::Literal(it) if matches!(it.value, ast::LiteralValue::Integer { value: 0, .. }))
+}
+
 impl<'s> Declarations<'s> {
     /// The constant that `initial` gives a variable declared as `target`.
     pub(super) fn initial(
@@ -54,6 +59,12 @@ impl<'s> Declarations<'s> {
                 let field = &self.program.structure(id).fields[0];
                 let target = Resolved { ty: field.ty, initial: field.initial.clone() };
                 Some(collapse(vec![self.initial_value(value, &target, scope)?]))
+            }
+            // Automation Studio writes `(0)` for a structure or an instance in which everything is 0.
+            (InitialKind::Value(expr), Type::Struct(_) | Type::Block(_))
+                if target.initial == Const::Zero && is_zero(expr) && self.log.sources.is_of_automation_studio() =>
+            {
+                Some(Const::Zero)
             }
             (InitialKind::Value(expr), _) => self.initial_value(expr, target, scope),
             (InitialKind::Bind(expr), _) => {

@@ -171,7 +171,9 @@ impl<'s> Declarations<'s> {
     /// Reports a variable that has its FUNCTION's or METHOD's name, which is that of the result there.
     pub(super) fn is_named_as_result(&mut self, pou: &ast::Pou<'s>, name: ast::Name<'s>) -> bool {
         let without = pou.result.is_none() && self.dialect(pou.name.span).shows_inner_variables();
-        let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter && !without;
+        // What has no body uses neither name.
+        let is_declared = pou.is_stub && self.log.sources.is_of_automation_studio();
+        let has_result = pou.kind.is_function() && pou.kind != PouKind::Setter && !without && !is_declared;
         let is_result = has_result && name.text.eq_ignore_ascii_case(pou.name.text);
         if is_result {
             self.report(

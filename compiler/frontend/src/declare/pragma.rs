@@ -11,7 +11,7 @@ const DECIDING_PRAGMAS: [&str; 6] = ["if", "elsif", "else", "end_if", "define", 
 const CONDITIONS: [&str; 6] =
     ["hasattribute", "hasconstanttype", "hasconstantvalue", "hasvalue", "hastype", "project_defined"];
 /// Pragmas for editors and other tools.
-const HARMLESS_PRAGMAS: [&str; 13] = [
+const HARMLESS_PRAGMAS: [&str; 17] = [
     "analysis",
     "axcode",
     "bp",
@@ -25,6 +25,11 @@ const HARMLESS_PRAGMAS: [&str; 13] = [
     "region",
     // Of Siemens AX: who may read and write a variable from outside of the PLC.
     "s7.extern",
+    // Of B&R: whether a function may run on redundant controllers.
+    "redund_context",
+    "redund_error",
+    "redund_ok",
+    "redund_unreplicable",
     "text",
 ];
 

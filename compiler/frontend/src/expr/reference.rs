@@ -154,6 +154,11 @@ impl<'s> Checker<'_, 's> {
 
     /// A reference to a variable.
     pub(crate) fn reference_to(&mut self, expr: &ast::Expr<'s>, kind: RefKind) -> Option<Expr> {
+        if let (Ast::Literal(_), Some(copy)) = (&expr.kind, self.decl.table.constant_copies.get(&expr.span)) {
+            let place = self.decl.synthetic_place(*copy);
+            let ty = place.ty;
+            return self.reference_at(place, ty, (kind, 0), expr.span);
+        }
         let mut found = self.place_or_view(expr)?;
         if let Some(view) = found.view.as_mut().filter(|it| it.is_bit)
             && self.is_of_a_union(expr)
@@ -573,7 +578,8 @@ impl<'s> Checker<'_, 's> {
         }
         let (Some((id, from)), Some((wanted, to))) = (self.ref_type(from), self.ref_type(to)) else { return false };
         let unknown = &self.decl.table.unknown_references;
-        if to.kind != RefKind::ReferenceTo || unknown.contains(&id) || unknown.contains(&wanted) {
+        let is_of_studio = self.decl.log.sources.is_of_automation_studio();
+        if is_of_studio || to.kind != RefKind::ReferenceTo || unknown.contains(&id) || unknown.contains(&wanted) {
             return true;
         }
         match (from.target, to.target) {
@@ -626,6 +632,29 @@ impl<'s> Checker<'_, 's> {
                 .fix(span, format!("{to} REF= {from}")),
         );
         None
+    }
+
+    /// `inst.axis := ADR(x)` of Automation Studio, where `axis` is a REFERENCE TO: what it refers to is set. A variable of a
+    /// program's is set so by ACCESS, and an address is a number that may be assigned to what it refers to.
+    pub(crate) fn address_for_reference(
+        &mut self,
+        target: &ast::Expr<'s>,
+        value: &'_ ast::Expr<'s>,
+        span: Span,
+    ) -> Option<Option<()>> {
+        if !self.decl.log.sources.is_of_automation_studio() {
+            return None;
+        }
+        let (Ast::Call(callee, arguments), Ast::Member(owner, _)) = (&value.kind, &target.kind) else { return None };
+        let is_address = matches!(&callee.kind, Ast::Name(it) if it.text.eq_ignore_ascii_case("ADR"));
+        let [ast::Argument { kind: ArgumentKind::Positional(argument), .. }] = arguments.as_slice() else {
+            return None;
+        };
+        let Some(Type::Struct(state)) = self.static_type(owner).filter(|_| is_address) else { return None };
+        self.decl.slot_of_instance(state)?;
+        let found = self.place_of_reference(target).and_then(|it| self.ref_type(it.place.ty));
+        found.filter(|it| it.1.kind == RefKind::ReferenceTo)?;
+        Some(self.bind_reference(target, argument, span))
     }
 
     /// Whether it is a REFERENCE TO what is not a reference itself.

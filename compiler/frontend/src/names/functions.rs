@@ -1,7 +1,7 @@
 //! The standard functions, as a table of signatures, and the names of conversions.
 
-use crate::ast::BinaryOp;
-use crate::dialect::Dialect;
+use crate::ast::{self, BinaryOp};
+use crate::dialect::{Dialect, bare_block};
 use crate::spelling::Key;
 use rustc_hash::FxHashMap;
 use staunch_ir::{Elementary, Op, TextOp};
@@ -275,6 +275,23 @@ pub(crate) fn exists_in(name: &str, dialect: Dialect) -> bool {
     named(name).iter().any(|it| has(it.0))
         || conversion(name).is_some_and(|it| has(it.owner()))
         || dialect.has_typed_functions() && typed(name).is_some()
+}
+
+/// Whether a declaration without a body is of what is here without it: an operator, a standard function, or a standard block that has
+/// these parameters.
+pub(crate) fn is_in_the_library(pou: &ast::Pou<'_>, dialect: Dialect) -> bool {
+    const OPERATORS: [&str; 7] = ["AND", "OR", "XOR", "NOT", "MOD", "ADR", "SIZEOF"];
+    let name = pou.name.text;
+    if pou.kind == ast::PouKind::Function {
+        let is_edge = |it: &(&str, &str)| it.0.eq_ignore_ascii_case(name);
+        return OPERATORS.iter().any(|it| it.eq_ignore_ascii_case(name))
+            || crate::automation_studio::EDGES.iter().any(is_edge)
+            || exists_in(name, dialect);
+    }
+    let Some(block) = bare_block(dialect, name) else { return false };
+    let has_pin = |wanted: &str| block.info().pins.iter().any(|it| it.name.eq_ignore_ascii_case(wanted));
+    let shown = pou.blocks.iter().filter(|it| it.kind != ast::VarKind::Var);
+    shown.flat_map(|it| &it.vars).flat_map(|it| &it.names).all(|it| has_pin(it.text))
 }
 
 /// What `ADD_INT` names: ADD, with one type of all that it may take (edition 3, table 21).

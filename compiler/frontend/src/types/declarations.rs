@@ -243,7 +243,7 @@ impl<'s> Declarations<'s> {
     /// Whether the POU in a slot has CONSTANTs that others may read by its name.
     pub fn has_own_constants(&self, slot: usize) -> bool {
         let PouSlot { ast: pou, owner, .. } = &self.pous[slot];
-        owner.is_none() && self.dialect(pou.name.span).shows_inner_variables() && pou.constants().next().is_some()
+        owner.is_none() && self.dialect(pou.name.span).names_constants_of_units() && pou.constants().next().is_some()
     }
 
     /// The POU of `Settings.MOST`, a CONSTANT by the name of its POU.

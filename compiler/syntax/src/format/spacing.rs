@@ -2,7 +2,7 @@
 
 use super::roles::Role;
 use super::token::Token;
-use crate::lex::Kind;
+use crate::lex::{Kind, Scanner};
 
 /// A token, and what it means.
 pub type Placed<'t, 's> = (&'t Token<'s>, Role);
@@ -21,7 +21,8 @@ pub fn is_apart((before, role): Placed<'_, '_>, (token, own): Placed<'_, '_>) ->
     match (before.kind, token.kind) {
         // Together these begin a comment.
         (Kind::OpenParen, Kind::Star | Kind::Power) | (Kind::Slash, Kind::Slash | Kind::Star) => true,
-        (Kind::Prefix, _) => false,
+        // `T# 2` is a prefix without its literal.
+        (Kind::Prefix, _) => token.is_apart && joins(before, token),
         (
             _,
             Kind::Semicolon
@@ -41,6 +42,12 @@ pub fn is_apart((before, role): Placed<'_, '_>, (token, own): Placed<'_, '_>) ->
         (it, Kind::OpenBracket) => !ends_operand(it),
         _ => true,
     }
+}
+
+/// Whether two tokens are another one without the space between them.
+fn joins(before: &Token<'_>, token: &Token<'_>) -> bool {
+    let text = format!("{}{}", before.text, token.text);
+    Scanner::new(&text).next() != Some(before.kind)
 }
 
 /// Signs that Structured Text does not have, and that mark a name in others.

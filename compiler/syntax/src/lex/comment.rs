@@ -1,6 +1,8 @@
 //! The ends of comments and pragmas, as the bytes up to them from after their beginning. That is the rest of the text when the
 //! end is missing; the caller sees that from the last characters.
 
+use crate::source::Comments;
+
 /// `(* … (* … *) … *)`
 pub fn nested(rest: &str) -> usize {
     let bytes = rest.as_bytes();
@@ -21,6 +23,11 @@ pub fn nested(rest: &str) -> usize {
         }
     }
     bytes.len()
+}
+
+/// `(* … (* … *)`
+pub fn first(rest: &str) -> usize {
+    until(rest, "*)")
 }
 
 /// A line that OpenPLC's editor adds for its debugger, `(*DBG:… (void *) …*)`, which the runtime drops before it compiles.
@@ -46,10 +53,11 @@ fn until(rest: &str, end: &str) -> usize {
 }
 
 /// Whether a comment or pragma reached its own end.
-pub fn is_closed(text: &str) -> bool {
+pub fn is_closed(text: &str, comments: Comments) -> bool {
+    let is_whole = || comments == Comments::Plain || text.starts_with(DEBUGGER) || balanced(text);
     match text.as_bytes() {
         [b'/', b'/', ..] => true,
-        [b'(', b'*', rest @ ..] => rest.ends_with(b"*)") && (text.starts_with(DEBUGGER) || balanced(text)),
+        [b'(', b'*', rest @ ..] => rest.ends_with(b"*)") && is_whole(),
         [b'/', b'*', rest @ ..] => rest.ends_with(b"*/"),
         _ => text.ends_with('}'),
     }

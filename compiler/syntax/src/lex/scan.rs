@@ -3,6 +3,7 @@
 
 use super::comment;
 use super::kind::Kind;
+use crate::source::Comments;
 use core::ops::Range;
 
 /// Reads a text from its start to its end.
@@ -12,11 +13,21 @@ pub struct Scanner<'s> {
     /// Of the last token.
     start: usize,
     end: usize,
+    comments: Comments,
 }
 
 impl<'s> Scanner<'s> {
     pub fn new(text: &'s str) -> Self {
-        Self { text, start: 0, end: 0 }
+        Self { text, start: 0, end: 0, comments: Comments::default() }
+    }
+
+    /// Says how comments end from here on.
+    pub fn end_comments(&mut self, comments: Comments) {
+        self.comments = comments;
+    }
+
+    pub fn comments(&self) -> Comments {
+        self.comments
     }
 
     /// Where the last token is.
@@ -35,7 +46,7 @@ impl<'s> Scanner<'s> {
     }
 
     /// The kind and the length of the token that `rest` begins with.
-    fn token(rest: &'s str) -> (Kind, usize) {
+    fn token(&self, rest: &'s str) -> (Kind, usize) {
         let bytes = rest.as_bytes();
         match bytes[0] {
             b'A'..=b'Z' | b'a'..=b'z' | b'_' => word(rest),
@@ -43,7 +54,11 @@ impl<'s> Scanner<'s> {
             b'\'' | b'"' => text(rest),
             b'%' => percent(bytes),
             b'(' if bytes.get(1) == Some(&b'*') => {
-                (Kind::Comment, comment::debugger(rest).unwrap_or_else(|| 2 + comment::nested(&rest[2..])))
+                let length = || match self.comments {
+                    Comments::Nested => comment::nested(&rest[2..]),
+                    Comments::Plain => comment::first(&rest[2..]),
+                };
+                (Kind::Comment, comment::debugger(rest).unwrap_or_else(|| 2 + length()))
             }
             b'/' if bytes.get(1) == Some(&b'*') => (Kind::Comment, 2 + comment::plain(&rest[2..])),
             b'/' if bytes.get(1) == Some(&b'/') => (Kind::Comment, rest.find('\n').unwrap_or(rest.len())),
@@ -69,7 +84,7 @@ impl Iterator for Scanner<'_> {
             self.end = self.start;
             return None;
         }
-        let (kind, length) = Self::token(rest);
+        let (kind, length) = self.token(rest);
         self.end = self.start + length;
         Some(kind)
     }

@@ -23,17 +23,40 @@ struct Found<'s> {
     /// First token and number of tokens of each declaration.
     declared: Vec<(usize, usize)>,
     reports: Vec<Diagnostic>,
+    /// Words that are names in this file.
+    free: &'static [Kind],
     text: &'s str,
     file: u16,
 }
 
-/// Reports such declarations, and makes one name of the tokens of each of them and of their uses.
-pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16) {
+/// Words of the standard's that are names in Automation Studio: its own libraries declare such variables and members.
+const OF_STUDIO: &[Kind] = &[
+    Kind::Type,
+    Kind::Program,
+    Kind::Continue,
+    Kind::Configuration,
+    Kind::Retain,
+    Kind::Persistent,
+    Kind::Until,
+    Kind::Exit,
+    Kind::By,
+    Kind::VarAccess,
+    Kind::VarGlobal,
+    Kind::Constant,
+];
+
+/// Reports such declarations, and makes one name of the tokens of each of them and of their uses. Some words are names
+/// in a file of Automation Studio, which may use what another declares.
+pub fn mend(tokens: &mut Tokens<'_>, text: &str, file: u16, is_of_studio: bool) {
+    let free = if is_of_studio { OF_STUDIO } else { &[] };
     members(tokens);
-    configurations(tokens, text, file);
-    let mut found = Found { text, file, ..Found::default() };
+    if !free.contains(&Kind::Configuration) {
+        configurations(tokens, text, file);
+    }
+    let words = free.iter().copied().collect();
+    let mut found = Found { text, file, free, words, ..Found::default() };
     declarations(tokens, &mut found);
-    if found.declared.is_empty() {
+    if found.declared.is_empty() && free.is_empty() {
         return;
     }
     rewrite(tokens, &found);
@@ -157,7 +180,14 @@ fn declared(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) -> Option<usi
 fn head(tokens: &Tokens<'_>, at: usize, found: &mut Found<'_>) {
     let kind = tokens.kinds[at];
     let word = kind.keyword().is_some_and(|it| !it.starts_with("END_"));
-    if word && !opens_section(kind) && !opens_item(kind) {
+    if !word || opens_section(kind) || opens_item(kind) {
+        return;
+    }
+    // Where words are free, operators are declared as functions, too: no use of them is a name.
+    let is_operator = matches!(kind, Kind::And | Kind::Or | Kind::Xor | Kind::Mod | Kind::Not);
+    if is_operator && !found.free.is_empty() {
+        found.declared.push((at, 1));
+    } else {
         found.report(tokens, at, 1);
     }
 }
@@ -190,6 +220,9 @@ impl Found<'_> {
         let span = Span { file: self.file, start, end };
         let own = &self.text[index(start)..index(end)];
         self.declared.push((at, count));
+        if count == 1 && self.free.contains(&tokens.kinds[at]) {
+            return;
+        }
         let known = match tokens.kinds[at].keyword() {
             Some(_) if count == 1 => !self.words.insert(tokens.kinds[at]),
             _ => !self.pieces.insert(spelled),
@@ -245,6 +278,10 @@ fn used(tokens: &Tokens<'_>, at: usize, before: Option<Kind>, found: &Found<'_>)
     }
     let next = tokens.kinds.get(at + 1).copied().unwrap_or(Kind::End);
     let word = tokens.kinds[at];
+    if before == Some(Kind::Colon) && found.free.contains(&word) {
+        // `1: EXIT;` of a CASE.
+        return None;
+    }
     (found.words.contains(&word) && stands_for_name(before, word, next)).then_some(1)
 }
 

@@ -11,7 +11,7 @@ use chumsky::{
 };
 
 use crate::{
-    ast::{BinaryOp, Binding, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, Region, VarDecl},
+    ast::{BinaryOp, Binding, Expr, Item, MAX_CHAIN, MAX_DEPTH, Name, Pou, Region, VarDecl},
     diagnostic::{Code, Diagnostic},
     lex::{Kind, MAX_REPORTS, Tokens, index},
     source::Span,
@@ -136,6 +136,10 @@ pub struct State<'t, 's> {
     pub bindings: Vec<Binding<'s>>,
     /// What is reported of a unit that the end of the file ends, if it is alone there.
     pub unclosed: Vec<Diagnostic>,
+    /// `a ACCESS ADR(b)` is a statement.
+    pub has_access: bool,
+    /// ACTIONs that no unit is before, and what is reported of each.
+    pub apart: Vec<(Pou<'s>, Diagnostic)>,
     /// What is reported of `a += b`, if the dialect does not have it.
     pub combined: Vec<Diagnostic>,
     /// The address in `x : BOOL AT %QX0.0`, and what is reported if the dialect does not have it.
@@ -176,6 +180,8 @@ impl<'t, 's> State<'t, 's> {
             nested: Vec::new(),
             bindings: Vec::new(),
             unclosed: Vec::new(),
+            has_access: false,
+            apart: Vec::new(),
             combined: Vec::new(),
             late_addresses: Vec::new(),
             nonretentive: Vec::new(),

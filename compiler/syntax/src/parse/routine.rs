@@ -89,12 +89,19 @@ pub fn member<'s>(input: &mut In<'_, '_, 's>, owner: &mut Pou<'s>, contents: Con
 pub fn following<'s>(input: &mut In<'_, '_, 's>, items: &mut [Item<'s>], contents: Contents) -> bool {
     let Some((kind, end)) = begins(input) else { return false };
     let is_class = |it: &&mut Pou<'s>| it.kind.has_routines();
+    let is_first = items.is_empty();
     let owner = match items.last_mut() {
         Some(Item::Pou(pou)) => Some(pou).filter(is_class),
         Some(Item::Types(_) | Item::Globals(_) | Item::Configuration(_) | Item::Test(_)) | None => None,
     };
     match owner {
         Some(owner) if kind == PouKind::Action => owner.routines.extend(routine(input, kind, end, contents)),
+        None if kind == PouKind::Action && is_first => {
+            let span = input.here();
+            let found = routine(input, kind, end, contents);
+            let found = found.into_iter().map(|it| (it, diagnostics::routine_outside(span, kind)));
+            input.state().apart.extend(found);
+        }
         Some(_) | None => {
             let span = input.here();
             input.report(diagnostics::routine_outside(span, kind));

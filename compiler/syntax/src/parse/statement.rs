@@ -2,7 +2,11 @@
 //! and reading continues at the next one.
 
 use crate::{
-    ast::{Arm, BinaryOp, Expr, ExprKind, Finally, Label, MAX_CHAIN, Name, Statement, StatementKind, Try, each_part},
+    ast::{
+        ArgumentKind, Arm, BinaryOp, Expr, ExprKind, Finally, Label, MAX_CHAIN, Name, Statement, StatementKind, Try,
+        each_part,
+    },
+    diagnostic::Diagnostic,
     lex::Kind,
     source::Span,
 };
@@ -222,6 +226,7 @@ fn simple<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             let value = expression(input)?;
             StatementKind::Attempt { target, value }
         }
+        Kind::Name if input.state().has_access && input.is_word("ACCESS") => access(input, target)?,
         Kind::Name => latch(input, target)?,
         Kind::Semicolon if misspelt::is_misspelt(input, &target) => return Err(Problem::REPORTED),
         Kind::Semicolon => StatementKind::Expr(target),
@@ -325,6 +330,26 @@ fn latch<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKi
         targets.push((std::mem::replace(&mut value, expression(input)?), set));
     }
     Ok(StatementKind::SetResetAll { targets, value })
+}
+
+/// `a ACCESS ADR(b)`: Automation Studio's words for `a REF= b`.
+fn access<'s>(input: &mut In<'_, '_, 's>, target: Expr<'s>) -> Parsed<StatementKind<'s>> {
+    let word = input.take();
+    let value = expression(input)?;
+    let span = value.span;
+    if let ExprKind::Call(callee, arguments) = value.kind
+        && matches!(callee.kind, ExprKind::Name(name) if name.text.eq_ignore_ascii_case("ADR"))
+        && let [argument] = arguments.as_slice()
+        && let ArgumentKind::Positional(value) = &argument.kind
+    {
+        return Ok(StatementKind::Bind { target, value: value.clone() });
+    }
+    input.report(
+        Diagnostic::unsupported(span, "an address that is a number, after ACCESS,")
+            .label("expected `ADR(…)` of a variable")
+            .other(word, "what this refers to is not known before the program runs"),
+    );
+    Err(Problem::REPORTED)
 }
 
 /// Whether the word before `=` sets, or resets.

@@ -3,6 +3,12 @@
 use super::assembly::{Assembly, Chunk};
 use super::scl::token::{Kind, Tokens};
 
+/// Whether a file with this name declares variables, types or functions.
+pub fn is_list(path: &str) -> bool {
+    let extension = path.rsplit_once('.').map_or("", |it| it.1);
+    ["var", "typ", "fun"].iter().any(|it| it.eq_ignore_ascii_case(extension))
+}
+
 /// The blocks as VAR_GLOBAL; `None` where the file begins otherwise.
 pub fn variables(path: &str, text: &str) -> Option<Assembly> {
     let is_it = path.rsplit_once('.').is_some_and(|it| it.1.eq_ignore_ascii_case("var"));
