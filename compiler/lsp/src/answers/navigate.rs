@@ -5,7 +5,7 @@ use crate::place::Place;
 use crate::project::Analysis;
 use gen_lsp_types::{Contents, DocumentHighlight, DocumentHighlightKind, Hover, Location, MarkupContent, MarkupKind};
 use staunch_frontend::ast::VarKind;
-use staunch_frontend::{DefId, Definition, DefinitionKind, Meaning, Span};
+use staunch_frontend::{DefId, DefinitionKind, Meaning, Span};
 
 pub fn hover(analysis: &Analysis, place: Place) -> Option<Hover> {
     let (span, meaning) = analysis.at(place)?;
