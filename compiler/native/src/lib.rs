@@ -18,6 +18,7 @@ mod operands;
 mod schedule;
 mod signature;
 mod tidy;
+mod trimmed;
 mod unused;
 
 mod scan;
