@@ -10,11 +10,14 @@ mod error;
 mod target;
 
 mod address;
+mod at_32_bits;
 mod count;
+mod dying;
 mod inline_routine;
 mod measure;
 mod module;
 mod operands;
+mod overstored;
 mod schedule;
 mod signature;
 mod tidy;

@@ -21,6 +21,9 @@
 //! A constant that only code away from the common path needs, or that is handed to another block, is made there: the optimiser has it
 //! before the loop, in a register or in the frame all the time. It may not assume that a block away from the common path is never entered.
 
+use crate::at_32_bits::at_32_bits;
+use crate::dying::dying_first;
+use crate::overstored::drop_overstored;
 use crate::unused::Uses;
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, BlockArg, BlockCall, Function, Inst, InstructionData, Opcode, Value};
@@ -31,7 +34,12 @@ const MOST_HANDED: usize = 4096;
 
 pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
     merge(function);
+    drop_overstored(function);
     reuse_sums(function);
+    if has_operands_in_memory {
+        let names = at_32_bits(function);
+        rename(function, &names, &HashSet::new());
+    }
     let blocks: Vec<Block> = function.layout.blocks().collect();
     for block in &blocks {
         constants_near(function, *block);
@@ -51,6 +59,7 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
         }
     }
     rename(function, &handed.names, &handed.jumps);
+    dying_first(function);
 }
 
 /// Results that are handed to a block of their own.
