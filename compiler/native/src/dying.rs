@@ -30,11 +30,14 @@ fn in_block(function: &mut Function, uses: &Uses, block: Block) {
     }
     for inst in instructions.into_iter().rev() {
         if let Some([a, b]) = exchangeable(function, inst) {
-            let dies = |it: Value| {
+            let ends = |it: Value| {
                 let is_only_here = here.get(&it).copied() == Some(uses.of(it)) && is_made_in(function, it, block);
                 is_only_here && !later.contains_key(&it)
             };
-            if a != b && !dies(a) && dies(b) && !is_operand(function, b) {
+            let dies = |it: Value| ends(it) && ends(whole(function, it));
+            // One that is used once may be handed on around a loop.
+            let is_shared = [a, whole(function, a)].iter().any(|it| uses.of(*it) > 1);
+            if is_shared && !dies(a) && dies(b) && !is_operand(function, b) {
                 function.dfg.inst_args_mut(inst).swap(0, 1);
             }
         }
@@ -50,6 +53,17 @@ fn exchangeable(function: &Function, inst: Inst) -> Option<[Value; 2]> {
         } => Some(args),
         _ => None,
     }
+}
+
+/// What a value is a part of, in the same register.
+fn whole(function: &Function, mut value: Value) -> Value {
+    while let Some(inst) = function.dfg.value_def(value).inst() {
+        match function.dfg.insts[inst] {
+            InstructionData::Unary { opcode: Opcode::Ireduce, arg } => value = arg,
+            _ => break,
+        }
+    }
+    value
 }
 
 fn is_made_in(function: &Function, value: Value, block: Block) -> bool {

@@ -48,6 +48,7 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
         return;
     }
     blocks.iter().for_each(|it| constants_second(function, *it));
+    dying_first(function);
     let uses = Uses::of_all(function);
     let mut handed = Handed::default();
     for block in blocks {
@@ -59,7 +60,6 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
         }
     }
     rename(function, &handed.names, &handed.jumps);
-    dying_first(function);
 }
 
 /// Results that are handed to a block of their own.

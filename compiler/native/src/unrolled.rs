@@ -22,6 +22,7 @@ use crate::function::{Flow, Function, LoopFrame};
 use crate::target::Aim;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use staunch_ir::loops::running;
+use staunch_ir::shifted::shifted;
 use staunch_ir::visit::{self, Access};
 use staunch_ir::{For, Root, StatementKind, Step, Taking, Value, turns};
 
@@ -191,7 +192,11 @@ fn reads(it: &For, around: &[&For]) -> usize {
 fn has_loop(it: &For) -> bool {
     let mut found = false;
     visit::statements(&it.body, &mut |it| {
-        found |= matches!(it.kind, StatementKind::For(_) | StatementKind::Loop { .. });
+        found |= match &it.kind {
+            // It is a look-up.
+            StatementKind::For(inner) => shifted(inner).is_none(),
+            kind => matches!(kind, StatementKind::Loop { .. }),
+        };
     });
     found
 }
