@@ -11,6 +11,7 @@ mod target;
 
 mod address;
 mod at_32_bits;
+mod away;
 mod count;
 mod dying;
 mod inline_routine;

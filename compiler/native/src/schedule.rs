@@ -22,6 +22,7 @@
 //! before the loop, in a register or in the frame all the time. It may not assume that a block away from the common path is never entered.
 
 use crate::at_32_bits::at_32_bits;
+use crate::away::copies_for_calls;
 use crate::dying::dying_first;
 use crate::overstored::drop_overstored;
 use crate::unused::Uses;
@@ -48,6 +49,7 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
         return;
     }
     blocks.iter().for_each(|it| constants_second(function, *it));
+    copies_for_calls(function, &blocks);
     dying_first(function);
     let uses = Uses::of_all(function);
     let mut handed = Handed::default();
@@ -209,10 +211,13 @@ fn constants_near(function: &mut Function, block: Block) {
     let is_cold = function.layout.is_cold(block);
     let Some(last) = function.layout.last_inst(block) else { return };
     let mut made: HashMap<Value, Value> = HashMap::new();
-    let instructions: Vec<Inst> = if is_cold { function.layout.block_insts(block).collect() } else { vec![last] };
+    let is_call = |it: &Inst| function.dfg.insts[*it].opcode().is_call();
+    let is_wanted = |it: &Inst| is_cold || *it == last || is_call(it);
+    let instructions: Vec<Inst> = function.layout.block_insts(block).filter(is_wanted).collect();
     for inst in instructions {
+        let takes_all = is_cold || inst != last;
         let values: Vec<Value> =
-            if is_cold { function.dfg.inst_values(inst).collect() } else { handed_on(function, inst) };
+            if takes_all { function.dfg.inst_values(inst).collect() } else { handed_on(function, inst) };
         let far: Vec<(Value, Inst)> =
             values.iter().filter_map(|it| Some((*it, constant_of(function, *it, (block, last), inst)?))).collect();
         for (value, maker) in far {
@@ -223,7 +228,7 @@ fn constants_near(function: &mut Function, block: Block) {
         function.dfg.map_inst_values(inst, |value| {
             at += 1;
             // What a branch tests stays as it is.
-            if is_cold || at > arguments { made.get(&value).copied().unwrap_or(value) } else { value }
+            if takes_all || at > arguments { made.get(&value).copied().unwrap_or(value) } else { value }
         });
     }
 }
