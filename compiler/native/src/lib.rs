@@ -32,6 +32,7 @@ mod expectation;
 mod expected;
 mod follow;
 mod function;
+mod grouped;
 mod looked_up;
 mod loop_start;
 mod loops;

@@ -24,7 +24,7 @@ use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use staunch_ir::loops::running;
 use staunch_ir::shifted::shifted;
 use staunch_ir::visit::{self, Access};
-use staunch_ir::{For, Root, StatementKind, Step, Taking, Value, turns};
+use staunch_ir::{For, Root, Statement, StatementKind, Step, Taking, Value, turns};
 
 /// All turns of a loop that is gone come to no more operations than these.
 const MOST: usize = 256;
@@ -83,7 +83,7 @@ impl<'p> Function<'_, 'p> {
         for at in 0..it.count {
             self.set_fixed_counter(running, value, at > 0);
             value += it.step;
-            if self.turn_in_line(running, after, &mut is_left) == Flow::Leaves {
+            if self.turn_in_line(&running.it.body, after, &mut is_left) == Flow::Leaves {
                 return is_left;
             }
         }
@@ -103,7 +103,7 @@ impl<'p> Function<'_, 'p> {
                 self.set_further_counter(running, start, further);
             }
             further += it.step;
-            flow = self.turn_in_line(running, after, &mut is_left);
+            flow = self.turn_in_line(&running.it.body, after, &mut is_left);
             if flow == Flow::Leaves {
                 break;
             }
@@ -126,10 +126,10 @@ impl<'p> Function<'_, 'p> {
     }
 
     /// One turn; the next one begins where the code continues.
-    fn turn_in_line(&mut self, running: &Running<'p>, after: clif::Block, is_left: &mut bool) -> Flow {
+    pub(crate) fn turn_in_line(&mut self, body: &'p [Statement], after: clif::Block, is_left: &mut bool) -> Flow {
         self.release_temporaries();
         self.loops.push(LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) });
-        let flow = self.block(&running.it.body);
+        let flow = self.block(body);
         let frame = self.loops.pop().expect("pushed above");
         *is_left |= frame.is_left;
         if !frame.is_continued {
@@ -147,7 +147,7 @@ impl<'p> Function<'_, 'p> {
         self.set_counter(running, value, is_stored);
     }
 
-    fn set_further_counter(&mut self, running: &Running<'p>, start: clif::Value, further: i128) -> clif::Value {
+    pub(crate) fn set_further_counter(&mut self, running: &Running<'p>, start: clif::Value, further: i128) -> clif::Value {
         let further = self.integer(types::I64, further);
         let value = self.ins().iadd(start, further);
         self.set_counter(running, value, true);
