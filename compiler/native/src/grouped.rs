@@ -9,7 +9,7 @@
 //!                                   FOR i := i TO b DO s := s + x[i]; END_FOR
 //! ```
 //!
-//! It applies to small bodies without other loops, and to counters that nothing else writes and that are at 64 bits while the loop runs, so that
+//! It applies to small bodies without other loops and checks of indices, and to counters that nothing else writes and that are at 64 bits while the loop runs, so that
 //! the bound of a group does not wrap. The turns of the loop budget are taken before. The counter has its value of each turn wherever it can be seen, as in
 //! [`unrolled`](crate::unrolled). It may not assume that there is a group.
 
@@ -17,7 +17,8 @@ use crate::control::{Control, Running};
 use crate::function::{Flow, Function, LoopFrame};
 use crate::target::Aim;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
-use staunch_ir::{Statement, StatementKind, Step, turns, visit};
+use staunch_ir::faults::{Faults, code_faults};
+use staunch_ir::{ArrayId, Expr, Statement, StatementKind, Step, turns, visit};
 
 /// Turns of a group.
 const GROUP: usize = 4;
@@ -32,8 +33,23 @@ impl<'p> Function<'_, 'p> {
         let is_constant = matches!(running.it.step, Step::Constant(_));
         let stays = !running.it.may_leave_range() || running.oversteps();
         let is_wanted = self.module.aim == Aim::Speed && self.noted.is_none() && !self.module.handles_faults;
-        let is_small = turns::size_of(body) <= MOST && !has_others(body);
+        let is_small = turns::size_of(body) <= MOST && !has_others(body) && !self.has_checks(body);
         (is_wanted && is_narrow && is_constant && stays && is_small).then_some((*running, GROUP))
+    }
+
+    /// Whether an index is checked in a body: each copy would have the way to its fault.
+    fn has_checks(&self, body: &[Statement]) -> bool {
+        let root_type = |root| self.module.program.root_type(self.routine, root);
+        let is_within = |index: &Expr, array: Option<ArrayId>| {
+            index.as_const().is_some() || array.is_some_and(|it| self.known(&|known| known.is_within(index, it)))
+        };
+        let program = self.module.program;
+        let faults = Faults { program, root_type: &root_type, is_within: &is_within, operation: &code_faults };
+        let mut found = false;
+        for statement in body {
+            visit::accesses(statement, &mut |place, _| found |= faults.place(place));
+        }
+        found
     }
 
     /// A loop from its first turn on, whose block is open and not sealed. Whether control continues after it.
