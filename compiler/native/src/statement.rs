@@ -2,6 +2,7 @@
 
 use crate::address::Address;
 use crate::function::{Flow, Function};
+use crate::looked_up::local;
 use crate::place::PlaceValue;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
 use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Type};
@@ -46,6 +47,7 @@ impl<'p> Function<'_, 'p> {
     }
 
     fn emit(&mut self, statement: &'p Statement) -> Flow {
+        self.fresh = None;
         self.release_temporaries();
         self.note_statement(statement.at);
         match &statement.kind {
@@ -106,6 +108,8 @@ impl<'p> Function<'_, 'p> {
             PlaceValue::Variable(variable) => {
                 let value = self.scalar(value);
                 self.builder.def_var(variable, value);
+                let made = self.made.filter(|it| it.reference == value);
+                self.fresh = local(target).zip(made);
             }
             PlaceValue::Memory(address) => self.assign_to(value, target, address),
         }
