@@ -19,6 +19,7 @@ mod measure;
 mod module;
 mod operands;
 mod overstored;
+mod reloaded;
 mod schedule;
 mod signature;
 mod tidy;

@@ -25,6 +25,7 @@ use crate::at_32_bits::at_32_bits;
 use crate::away::copies_for_calls;
 use crate::dying::dying_first;
 use crate::overstored::drop_overstored;
+use crate::reloaded::drop_reloaded;
 use crate::unused::Uses;
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, BlockArg, BlockCall, Function, Inst, InstructionData, Opcode, Value};
@@ -35,6 +36,8 @@ const MOST_HANDED: usize = 4096;
 
 pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
     merge(function);
+    let names = drop_reloaded(function);
+    rename(function, &names, &HashSet::new());
     drop_overstored(function);
     reuse_sums(function);
     if has_operands_in_memory {
