@@ -34,6 +34,7 @@ mod expected;
 mod follow;
 mod function;
 mod grouped;
+mod lanes;
 mod looked_up;
 mod loop_start;
 mod loops;

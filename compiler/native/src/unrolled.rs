@@ -142,7 +142,7 @@ impl<'p> Function<'_, 'p> {
         Flow::Continues
     }
 
-    fn set_fixed_counter(&mut self, running: &Running<'p>, value: i128, is_stored: bool) {
+    pub(crate) fn set_fixed_counter(&mut self, running: &Running<'p>, value: i128, is_stored: bool) {
         let value = self.integer(types::I64, value);
         self.set_counter(running, value, is_stored);
     }
@@ -165,7 +165,7 @@ fn group(count: usize, size: usize, (reads, most_read): (usize, usize)) -> usize
 }
 
 /// The first value, the step, and how many there are; `None` where they are not constant, or none.
-fn values(it: &For) -> Option<(i128, i128, usize)> {
+pub(crate) fn values(it: &For) -> Option<(i128, i128, usize)> {
     let [first, last] = [&it.first, &it.last].map(|it| it.as_const().and_then(Value::as_integer));
     let (first, last, Step::Constant(step)) = (first?, last?, &it.step) else { return None };
     // As signed numbers of 64 bits.
