@@ -161,14 +161,23 @@ impl<'p> Function<'_, 'p> {
         let (then_block, after) = (self.builder.create_block(), self.builder.create_block());
         if otherwise.is_empty() {
             self.test(condition, then_block, after);
+            let seen = self.seen.at(self.builder.current_block());
+            self.seen = seen.in_way(then_block);
             self.arm(then_block, then, after);
             self.go_on_in(after);
+            self.seen = seen.after_ways(after);
             return Flow::Continues;
         }
         let otherwise_block = self.builder.create_block();
         self.test(condition, then_block, otherwise_block);
-        let flow = [self.arm(then_block, then, after), self.arm(otherwise_block, otherwise, after)];
-        self.join(&flow, after)
+        let seen = self.seen.at(self.builder.current_block());
+        let flow = [(then_block, then), (otherwise_block, otherwise)].map(|(block, body)| {
+            self.seen = seen.in_way(block);
+            self.arm(block, body, after)
+        });
+        let flow = self.join(&flow, after);
+        self.seen = seen.after_ways(after);
+        flow
     }
 
     /// Flow one way or the other. A NOT costs nothing here.
