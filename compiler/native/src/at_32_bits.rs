@@ -57,11 +57,7 @@ fn is_narrow(ty: Type) -> bool {
 /// Whether the lower bits of an operation's result are those of its operands.
 fn is_sum(function: &Function, inst: Inst) -> bool {
     let is_narrow = function.dfg.inst_results(inst).first().is_some_and(|it| is_narrow(function.dfg.value_type(*it)));
-    is_narrow
-        && matches!(
-            function.dfg.insts[inst].opcode(),
-            Opcode::Iadd | Opcode::Isub | Opcode::Imul
-        )
+    is_narrow && matches!(function.dfg.insts[inst].opcode(), Opcode::Iadd | Opcode::Isub | Opcode::Imul)
 }
 
 #[derive(Default)]

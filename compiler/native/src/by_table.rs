@@ -64,7 +64,9 @@ impl<'p> Function<'_, 'p> {
 
     /// A value whose bits are the same, but for those of the byte that leaves: what was added to them is not needed.
     fn without_byte(&self, value: clif::Value, is_up: bool) -> clif::Value {
-        let Some(InstructionData::Binary { opcode: Opcode::Bxor, args }) = self.instruction(value) else { return value };
+        let Some(InstructionData::Binary { opcode: Opcode::Bxor, args }) = self.instruction(value) else {
+            return value;
+        };
         let rest = i64::from(self.builder.func.dfg.value_type(value).bits()) - BYTE;
         let is_byte = |it: clif::Value| match self.instruction(it) {
             Some(InstructionData::Unary { opcode: Opcode::Uextend, arg }) if !is_up => {

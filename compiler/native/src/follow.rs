@@ -323,7 +323,8 @@ impl Function<'_, '_> {
 
     /// What was added to `start` for a pointer, if that is seen.
     fn distance_from(&mut self, start: clif::Value, pointer: clif::Value) -> Option<clif::Value> {
-        let Some(InstructionData::Binary { opcode: Opcode::Iadd, args: [a, b] }) = self.instruction(pointer).copied() else {
+        let Some(InstructionData::Binary { opcode: Opcode::Iadd, args: [a, b] }) = self.instruction(pointer).copied()
+        else {
             return None;
         };
         match (a == start, b == start) {

@@ -51,7 +51,7 @@ impl<'p> Function<'_, 'p> {
             _ => return None,
         };
         let fits = count.is_multiple_of(lanes) && body.is_separate(&frame);
-        fits.then(|| self.groups_in_lanes(of, ty, lanes, &body))
+        fits.then(|| self.groups_in_lanes(of, (ty, lanes), count, &body))
     }
 
     fn body_in_lanes(&self, it: &'p For) -> Option<Body<'p>> {
@@ -60,20 +60,30 @@ impl<'p> Function<'_, 'p> {
         Body::of(it, &self.counters, self.routine, known)
     }
 
-    fn groups_in_lanes(&mut self, of: &Running<'p>, ty: clif::Type, lanes: usize, body: &Body<'p>) -> Flow {
+    fn groups_in_lanes(
+        &mut self,
+        of: &Running<'p>,
+        (ty, lanes): (clif::Type, usize),
+        count: usize,
+        body: &Body<'p>,
+    ) -> Flow {
         let head = self.builder.create_block();
         self.ins().jump(head, &[]);
         self.builder.switch_to_block(head);
         let start = self.counter_value(of);
+        let vectors = body.vectors(count / lanes);
         let mut known: Vec<Lane<'p>> = Vec::new();
-        self.lane_statements(&of.it.body, (ty, &of.it.counter), &mut known);
-        let further = i128::try_from(lanes).expect("a few lanes");
-        let end = self.set_further_counter(of, start, further);
+        let (mut end, mut further) = (start, 0);
+        for _ in 0..vectors {
+            self.lane_statements(&of.it.body, (ty, &of.it.counter), &mut known);
+            further += i128::try_from(lanes).expect("a few lanes");
+            end = self.set_further_counter(of, start, further);
+        }
         let last = self.last(of);
         let is_past = self.ins().icmp(IntCC::SignedGreaterThan, end, last);
         let done = self.builder.create_block();
         self.ins().brif(is_past, done, &[], head, &[]);
-        self.leads_back(lanes);
+        self.leads_back(lanes * vectors);
         self.builder.seal_block(head);
         self.go_on_in(done);
         self.set_end(of, of.end().expect("the loop's ends are constant"));
@@ -91,20 +101,21 @@ impl<'p> Function<'_, 'p> {
 
     fn lane_statements(&mut self, body: &'p [Statement], of: Of<'p>, known: &mut Vec<Lane<'p>>) {
         for statement in body {
-            match &statement.kind {
-                StatementKind::Assign { target, value } => {
-                    let value = self.lanes_of(value, of, known);
-                    if is_element(target) {
-                        let address = self.address(target);
-                        let flags = self.writing(address);
-                        self.ins().store(anywhere(flags), value, address.base, address.displacement());
-                    } else {
-                        known.retain(|it| !it.0.is_same_variable(target));
-                        known.push((target, value));
-                    }
-                }
-                StatementKind::For(inner) => self.lanes_of_turns(inner, statement.at, of, known),
-                _ => unreachable!("a body that was looked at"),
+            if let StatementKind::For(inner) = &statement.kind {
+                self.lanes_of_turns(inner, statement.at, of, known);
+                continue;
+            }
+            let StatementKind::Assign { target, value } = &statement.kind else {
+                unreachable!("a body that was looked at");
+            };
+            let value = self.lanes_of(value, of, known);
+            if is_element(target) {
+                let address = self.address(target);
+                let flags = self.writing(address);
+                self.ins().store(anywhere(flags), value, address.base, address.displacement());
+            } else {
+                known.retain(|it| !it.0.is_same_variable(target));
+                known.push((target, value));
             }
         }
     }
@@ -127,27 +138,24 @@ impl<'p> Function<'_, 'p> {
     }
 
     fn lanes_of(&mut self, expr: &'p Expr, of: Of<'p>, known: &[Lane<'p>]) -> clif::Value {
-        match &expr.kind {
-            ExprKind::Load(place) => {
-                if let Some((_, value)) = known.iter().find(|it| it.0.is_same_variable(place)) {
-                    return *value;
-                }
-                if body::follows(place, of.1) {
-                    let address = self.address(place);
-                    return self.load_lanes(of.0, address);
-                }
+        if let ExprKind::Apply(op, operands) = &expr.kind {
+            let [a, b] = [&operands[0], &operands[1]].map(|it| self.lanes_of(it, of, known));
+            return match op {
+                Op::Add => self.ins().fadd(a, b),
+                Op::Sub => self.ins().fsub(a, b),
+                Op::Mul => self.ins().fmul(a, b),
+                Op::Div => self.ins().fdiv(a, b),
+                _ => unreachable!("a body that was looked at"),
+            };
+        }
+        if let ExprKind::Load(place) = &expr.kind {
+            if let Some((_, value)) = known.iter().find(|it| it.0.is_same_variable(place)) {
+                return *value;
             }
-            ExprKind::Apply(op, operands) => {
-                let [a, b] = [&operands[0], &operands[1]].map(|it| self.lanes_of(it, of, known));
-                return match op {
-                    Op::Add => self.ins().fadd(a, b),
-                    Op::Sub => self.ins().fsub(a, b),
-                    Op::Mul => self.ins().fmul(a, b),
-                    Op::Div => self.ins().fdiv(a, b),
-                    _ => unreachable!("a body that was looked at"),
-                };
+            if body::follows(place, of.1) {
+                let address = self.address(place);
+                return self.load_lanes(of.0, address);
             }
-            _ => {}
         }
         let value = self.scalar(expr);
         self.ins().splat(of.0, value)

@@ -359,7 +359,9 @@ impl<'p> ModuleEmitter<'p> {
         merge(&mut context.func);
         context.optimize(isa, control).map_err(|error| reason(&error))?;
         schedule(&mut context.func, self.has_operands_in_memory);
-        if std::env::var_os("DBG").is_some() { eprintln!("{}", context.func.display()); }
+        if std::env::var_os("DBG").is_some() {
+            eprintln!("{}", context.func.display());
+        }
         context.compute_cfg();
         context.compute_domtree();
         context.verify_if(isa).map_err(|error| reason(&error))?;
@@ -393,8 +395,7 @@ impl<'p> ModuleEmitter<'p> {
             ModuleReloc { offset: trimmed.place(relocation.offset), ..relocation }
         });
         let relocations: Vec<_> = relocations.collect();
-        let defined =
-            self.output.define_function_bytes(id, code.buffer.alignment.into(), &trimmed.bytes, &relocations);
+        let defined = self.output.define_function_bytes(id, code.buffer.alignment.into(), &trimmed.bytes, &relocations);
         defined.map_err(|error| reason(&error))
     }
 }

@@ -147,7 +147,12 @@ impl<'p> Function<'_, 'p> {
         self.set_counter(running, value, is_stored);
     }
 
-    pub(crate) fn set_further_counter(&mut self, running: &Running<'p>, start: clif::Value, further: i128) -> clif::Value {
+    pub(crate) fn set_further_counter(
+        &mut self,
+        running: &Running<'p>,
+        start: clif::Value,
+        further: i128,
+    ) -> clif::Value {
         let further = self.integer(types::I64, further);
         let value = self.ins().iadd(start, further);
         self.set_counter(running, value, true);

@@ -10,6 +10,9 @@ use staunch_ir::{
 /// Turns of a loop within, all of which are in line; and operations in all.
 const MOST_TURNS: usize = 32;
 const MOST: usize = 128;
+/// Vectors one after the other, and their operations.
+const MOST_VECTORS: usize = 4;
+const MOST_OF_GROUP: usize = 64;
 
 pub(super) struct Body<'p> {
     /// Scalar variables that each turn assigns before it reads them.
@@ -19,16 +22,23 @@ pub(super) struct Body<'p> {
     read: Vec<&'p Place>,
     /// Of all numbers.
     pub(super) repr: Option<Repr>,
+    operations: usize,
 }
 
 impl<'p> Body<'p> {
     /// Of a loop; `None` where its turns cannot be in lanes, whatever is the same storage.
     pub(super) fn of(it: &'p For, around: &[&'p For], routine: &'p Routine, known: Known<'_>) -> Option<Self> {
-        let body = Self { variables: Vec::new(), stored: Vec::new(), read: Vec::new(), repr: None };
-        let mut look = Look { of: it, routine, loops: around.to_vec(), known, body, operations: 0, repeated: 1 };
+        let body = Self { variables: Vec::new(), stored: Vec::new(), read: Vec::new(), repr: None, operations: 0 };
+        let mut look = Look { of: it, routine, loops: around.to_vec(), known, body, repeated: 1 };
         look.statements(&it.body)?;
-        let is_worth_it = !look.body.stored.is_empty() && look.operations <= MOST;
+        let is_worth_it = !look.body.stored.is_empty() && look.body.operations <= MOST;
         is_worth_it.then_some(look.body)
+    }
+
+    /// How many vectors of turns are one after the other, of so many.
+    pub(super) fn vectors(&self, count: usize) -> usize {
+        let fits = |it: &usize| count.is_multiple_of(*it) && it * self.operations <= MOST_OF_GROUP;
+        (2..=MOST_VECTORS).rev().find(fits).unwrap_or(1)
     }
 
     /// Whether what one turn writes is no other's.
@@ -43,10 +53,8 @@ impl<'p> Body<'p> {
 
 /// Whether an element is the one at the counter, or at a constant distance from it.
 pub(super) fn follows(place: &Place, counter: &Place) -> bool {
-    match place.projections.last() {
-        Some(Projection::Index { index, .. }) => names(index, counter),
-        _ => false,
-    }
+    let Some(Projection::Index { index, .. }) = place.projections.last() else { return false };
+    names(index, counter)
 }
 
 fn names(index: &Expr, counter: &Place) -> bool {
@@ -54,7 +62,11 @@ fn names(index: &Expr, counter: &Place) -> bool {
         ExprKind::Load(place) => place.is_same_variable(counter),
         ExprKind::Apply(_, operands) => operands.iter().any(|it| names(it, counter)),
         ExprKind::Convert(_, operand) => names(operand, counter),
-        _ => false,
+        ExprKind::Const(_)
+        | ExprKind::Text(_)
+        | ExprKind::AddressOf(_)
+        | ExprKind::ApplyText(..)
+        | ExprKind::Aggregate(_) => false,
     }
 }
 
@@ -73,7 +85,6 @@ struct Look<'p, 'k> {
     loops: Vec<&'p For>,
     known: Known<'k>,
     body: Body<'p>,
-    operations: usize,
     /// The turns of the loop within, around a statement.
     repeated: usize,
 }
@@ -85,14 +96,13 @@ fn only_if(it: bool) -> Option<()> {
 impl<'p> Look<'p, '_> {
     fn statements(&mut self, body: &'p [Statement]) -> Option<()> {
         for statement in body {
-            match &statement.kind {
-                StatementKind::Assign { target, value } => {
-                    self.value(value)?;
-                    self.target(target)?;
-                }
-                StatementKind::For(inner) => self.turns(inner)?,
-                _ => return None,
+            if let StatementKind::For(inner) = &statement.kind {
+                self.turns(inner)?;
+                continue;
             }
+            let StatementKind::Assign { target, value } = &statement.kind else { return None };
+            self.value(value)?;
+            self.target(target)?;
         }
         Some(())
     }
@@ -111,7 +121,7 @@ impl<'p> Look<'p, '_> {
 
     fn target(&mut self, target: &'p Place) -> Option<()> {
         self.number(target.ty)?;
-        self.operations += self.repeated;
+        self.body.operations += self.repeated;
         if target.indices().next().is_some() {
             only_if(self.place(target)? == Way::Further)?;
             self.body.stored.push(target);
@@ -128,7 +138,7 @@ impl<'p> Look<'p, '_> {
 
     fn value(&mut self, expr: &'p Expr) -> Option<()> {
         self.number(expr.ty)?;
-        self.operations += self.repeated;
+        self.body.operations += self.repeated;
         match &expr.kind {
             ExprKind::Const(_) => Some(()),
             ExprKind::Load(place) => {
@@ -141,7 +151,12 @@ impl<'p> Look<'p, '_> {
             ExprKind::Apply(Op::Add | Op::Sub | Op::Mul | Op::Div, operands) if operands.len() == 2 => {
                 operands.iter().try_for_each(|it| self.value(it))
             }
-            _ => None,
+            ExprKind::Convert(..)
+            | ExprKind::Apply(..)
+            | ExprKind::Text(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Aggregate(_) => None,
         }
     }
 
@@ -173,7 +188,12 @@ impl<'p> Look<'p, '_> {
                     _ => None,
                 }
             }
-            _ => None,
+            ExprKind::Convert(..)
+            | ExprKind::Apply(..)
+            | ExprKind::Text(_)
+            | ExprKind::AddressOf(_)
+            | ExprKind::ApplyText(..)
+            | ExprKind::Aggregate(_) => None,
         }
     }
 
