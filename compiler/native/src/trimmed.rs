@@ -52,7 +52,7 @@ impl Trimmed {
     /// Where it has what the code generator's has there.
     pub(crate) fn place(&self, offset: CodeOffset) -> CodeOffset {
         let cut = CodeOffset::try_from(self.cut).expect("a few bytes");
-        offset.checked_sub(cut).unwrap_or_default()
+        offset.saturating_sub(cut)
     }
 
     pub(crate) fn of(code: &CompiledCode, function: &Function) -> Self {

@@ -44,10 +44,37 @@ impl<'p> Body<'p> {
     /// Whether what one turn writes is no other's.
     pub(super) fn is_separate(&self, frame: &Frame<'_>) -> bool {
         let written: Vec<&Place> = self.stored.iter().chain(&self.variables).copied().collect();
-        let is_apart = |a: &Place, b: &Place| matches!(alias(frame, a, b), Alias::No);
+        // The same element is of one turn alone: its index follows the counter.
+        let is_apart = |a: &Place, b: &Place| matches!(alias(frame, a, b), Alias::No) || is_same_element(a, b);
         let all = written.iter().enumerate();
         let mut pairs = all.flat_map(|(at, a)| written[at + 1..].iter().chain(&self.read).map(move |b| (*a, *b)));
         pairs.all(|(a, b)| is_apart(a, b))
+    }
+}
+
+/// Whether two places are written alike, and are elements at the counter: one of the two is stored to.
+fn is_same_element(a: &Place, b: &Place) -> bool {
+    let same = |(a, b): (&Projection, &Projection)| match (a, b) {
+        (Projection::Field(a), Projection::Field(b)) => a == b,
+        (Projection::Index { index: a, .. }, Projection::Index { index: b, .. }) => is_same_index(a, b),
+        (Projection::Field(_) | Projection::Index { .. } | Projection::Deref { .. }, _) => false,
+    };
+    let has_index = a.indices().next().is_some();
+    has_index && a.root == b.root && a.projections.len() == b.projections.len() && {
+        a.projections.iter().zip(&b.projections).all(same)
+    }
+}
+
+/// Whether two sums of counters and constants are.
+fn is_same_index(a: &Expr, b: &Expr) -> bool {
+    match (&a.kind, &b.kind) {
+        (ExprKind::Const(a), ExprKind::Const(b)) => a == b,
+        (ExprKind::Load(a), ExprKind::Load(b)) => a.is_same_variable(b),
+        (ExprKind::Convert(how, a), ExprKind::Convert(other, b)) => how == other && is_same_index(a, b),
+        (ExprKind::Apply(op, a), ExprKind::Apply(other, b)) => {
+            op == other && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same_index(a, b))
+        }
+        _ => false,
     }
 }
 
