@@ -15,6 +15,7 @@ impl<'p> Function<'_, 'p> {
 
     /// A block that control comes to only from the statements `before` it.
     pub(crate) fn block_after(&mut self, before: &'p [Statement], block: &'p [Statement]) -> Flow {
+        self.fresh = None;
         let mut rest = block;
         while let Some((statement, further)) = rest.split_first() {
             let flow = match self.next_run(rest) {
@@ -42,6 +43,10 @@ impl<'p> Function<'_, 'p> {
     fn statement(&mut self, statement: &'p Statement) -> Flow {
         let assigned = self.assigned(statement);
         let flow = self.emit(statement);
+        // What a branch or a loop has made at its end is made on one way alone.
+        if !matches!(statement.kind, StatementKind::Assign { .. }) {
+            self.fresh = None;
+        }
         self.note_written(statement, assigned);
         flow
     }
