@@ -359,9 +359,6 @@ impl<'p> ModuleEmitter<'p> {
         merge(&mut context.func);
         context.optimize(isa, control).map_err(|error| reason(&error))?;
         schedule(&mut context.func, self.has_operands_in_memory);
-        if std::env::var_os("DBG").is_some() {
-            eprintln!("{}", context.func.display());
-        }
         context.compute_cfg();
         context.compute_domtree();
         context.verify_if(isa).map_err(|error| reason(&error))?;
