@@ -57,3 +57,92 @@ fn a_byte_of_a_checksum_is_looked_up() {
         FOR k := 1 TO 8 DO IF crc.15 THEN crc := SHL(crc, 1) XOR 16#1021; ELSE crc := SHL(crc, 1); END_IF END_FOR END_PROGRAM",
     );
 }
+
+/// A test of the program's number, two moves and an end.
+#[test]
+fn code_that_calls_nothing_has_no_frame() {
+    takes_at_most(7, "PROGRAM Main VAR a, b : INT; END_VAR a := b; END_PROGRAM");
+}
+
+/// Two instructions an element.
+#[test]
+fn narrow_sums_leave_their_operands() {
+    takes_at_most(
+        45,
+        "PROGRAM Main VAR s : USINT; d : ARRAY[0..15] OF USINT; i : INT; END_VAR
+        FOR i := 0 TO 15 DO d[i] := s + INT_TO_USINT(i); END_FOR END_PROGRAM",
+    );
+}
+
+/// Three instructions a turn: a copy, a shift, and a sum by its result.
+#[test]
+fn operands_that_are_not_needed_come_first() {
+    takes_at_most(
+        40,
+        "PROGRAM Main VAR x : DWORD; i : INT; END_VAR FOR i := 0 TO 9 DO x := x XOR SHR(x, 1); END_FOR END_PROGRAM",
+    );
+}
+
+#[test]
+fn a_byte_of_data_takes_six_instructions_of_a_checksum() {
+    takes_at_most(
+        64 * 7 + 30,
+        "PROGRAM Main VAR data : ARRAY[0..63] OF BYTE; crc : WORD; i, k : INT; END_VAR
+        FOR i := 0 TO 63 DO
+            crc := crc XOR BYTE_TO_WORD(data[i]);
+            FOR k := 1 TO 8 DO IF crc.0 THEN crc := SHR(crc, 1) XOR 16#A001; ELSE crc := SHR(crc, 1); END_IF END_FOR
+        END_FOR END_PROGRAM",
+    );
+}
+
+/// Each bit of the word is stored once, and nothing is loaded again.
+#[test]
+fn what_is_stored_over_is_not_stored() {
+    takes_at_most(22, "PROGRAM Main VAR w : WORD; a, b : BOOL; END_VAR w.0 := a; w.1 := b; w.2 := a; END_PROGRAM");
+}
+
+/// Of at most 256 turns, less than four instructions each.
+#[test]
+fn turns_whose_number_is_not_constant_are_in_groups() {
+    takes_at_most(
+        256 * 3,
+        "PROGRAM Main VAR a : ARRAY[0..255] OF DINT; n, i : USINT; s : DINT; END_VAR
+        s := 0; FOR i := 1 TO n DO s := s + a[i]; END_FOR END_PROGRAM",
+    );
+}
+
+/// Two turns in each vector, four instructions a vector of the inner loop.
+#[test]
+fn turns_over_reals_are_in_lanes() {
+    takes_at_most(
+        8 * 4 * (8 * 4 + 8) + 60,
+        "PROGRAM Main VAR a, b, c : ARRAY[0..7, 0..7] OF LREAL; s : LREAL; i, j, k : INT; END_VAR
+        FOR i := 0 TO 7 DO FOR j := 0 TO 7 DO
+            s := 0.0; FOR k := 0 TO 7 DO s := s + a[i, k] * b[k, j]; END_FOR c[i, j] := s;
+        END_FOR END_FOR END_PROGRAM",
+    );
+    takes_at_most(
+        62,
+        "PROGRAM Main VAR a, b, c : ARRAY[0..15] OF LREAL; i : INT; END_VAR
+        FOR i := 0 TO 15 DO c[i] := a[i] * b[i] + a[i]; END_FOR END_PROGRAM",
+    );
+}
+
+/// One check of the index, which is a variable's.
+#[test]
+fn a_check_holds_in_all_ways_after_it() {
+    takes_at_most(
+        24,
+        "PROGRAM Main VAR a : ARRAY[0..9] OF INT; i, x, y : INT; END_VAR
+        IF a[i] = 3 THEN x := a[i]; ELSIF a[i] < 5 THEN y := a[i]; END_IF END_PROGRAM",
+    );
+}
+
+#[test]
+fn an_address_that_was_just_made_is_not_looked_up() {
+    takes_at_most(
+        8 * 4 + 30,
+        "PROGRAM Main VAR a : ARRAY[0..7] OF DINT; p : REF_TO DINT; i : INT; END_VAR
+        FOR i := 0 TO 7 DO p := REF(a[i]); p^ := p^ + 1; END_FOR END_PROGRAM",
+    );
+}

@@ -15,7 +15,7 @@ use crate::function::{Flow, Function};
 use crate::place::PlaceValue;
 use crate::signature::clif_type;
 use crate::target::Aim;
-use cranelift_codegen::ir::{self as clif, InstBuilder, types};
+use cranelift_codegen::ir::{self as clif, InstBuilder, InstructionData, Opcode, types};
 use staunch_ir::layout::usize_of;
 use staunch_ir::shifted::{Shifted, shifted};
 use staunch_ir::{For, Location};
@@ -57,7 +57,29 @@ impl<'p> Function<'_, 'p> {
         if rest == 0 {
             return added;
         }
-        let shifted = if it.is_up { self.ins().ishl_imm_u(before, BYTE) } else { self.ins().ushr_imm_u(before, BYTE) };
+        let stays = self.without_byte(before, it.is_up);
+        let shifted = if it.is_up { self.ins().ishl_imm_u(stays, BYTE) } else { self.ins().ushr_imm_u(stays, BYTE) };
         self.ins().bxor(shifted, added)
+    }
+
+    /// A value whose bits are the same, but for those of the byte that leaves: what was added to them is not needed.
+    fn without_byte(&self, value: clif::Value, is_up: bool) -> clif::Value {
+        let Some(InstructionData::Binary { opcode: Opcode::Bxor, args }) = self.instruction(value) else {
+            return value;
+        };
+        let rest = i64::from(self.builder.func.dfg.value_type(value).bits()) - BYTE;
+        let is_byte = |it: clif::Value| match self.instruction(it) {
+            Some(InstructionData::Unary { opcode: Opcode::Uextend, arg }) if !is_up => {
+                self.builder.func.dfg.value_type(*arg) == types::I8
+            }
+            Some(InstructionData::Binary { opcode: Opcode::Ishl, args: [_, by] }) if is_up => {
+                matches!(self.instruction(*by), Some(InstructionData::UnaryImm { imm, .. }) if imm.bits() == rest)
+            }
+            _ => false,
+        };
+        match args {
+            [rest, added] | [added, rest] if is_byte(*added) => *rest,
+            _ => value,
+        }
     }
 }

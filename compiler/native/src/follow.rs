@@ -1,12 +1,13 @@
 //! Accesses through references: calls of the runtime, which checks each by the program's table of objects.
 
 use crate::address::{Address, Kind};
-use crate::function::{Function, Leads};
+use crate::function::{Function, Leads, MadeAddress};
 use crate::place::class;
 use crate::quiet;
 use crate::runtime_call::by_pointer;
 use crate::signature::clif_type;
-use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, MemFlagsData, condcodes::IntCC, types};
+use cranelift_codegen::ir::{self as clif, AbiParam, BlockArg, InstBuilder, InstructionData, MemFlagsData, Opcode};
+use cranelift_codegen::ir::{condcodes::IntCC, types};
 use staunch_ir::layout::{Shape, usize_of};
 use staunch_ir::reference::{Followed, followed, view, wanted};
 use staunch_ir::{ArrayId, Expr, FaultKind, Location, Place, Projection, StringType, Type};
@@ -302,10 +303,15 @@ impl Function<'_, '_> {
         let address = self.address(place);
         let pointer = self.pointer(address);
         let [words, state] = self.world();
-        let offset = self.ins().isub(pointer, state.1);
+        let offset = match self.distance_from(state.1, pointer) {
+            Some(distance) => distance,
+            None => self.ins().isub(pointer, state.1),
+        };
         if let Some(object) = self.module.targets().object_of(self.routine, place) {
             let first = Reference { object, address: ORIGIN }.bits();
-            return self.ins().iadd_imm_s(offset, first.cast_signed());
+            let reference = self.ins().iadd_imm_s(offset, first.cast_signed());
+            self.made = Some(MadeAddress { reference, offset, ty: place.ty });
+            return reference;
         }
         let size = usize_of(self.module.layout.size(place.ty));
         let size = i64::try_from(size).expect("verified IR: sizes are within 1 GiB");
@@ -313,6 +319,22 @@ impl Function<'_, '_> {
         let arguments = [words, (AbiParam::new(types::I64), offset), (AbiParam::new(types::I64), size)];
         let bits = self.call_runtime("staunch_reference_address", &arguments, Some(AbiParam::new(types::I64)));
         bits.expect("an address is returned")
+    }
+
+    /// What was added to `start` for a pointer, if that is seen.
+    fn distance_from(&mut self, start: clif::Value, pointer: clif::Value) -> Option<clif::Value> {
+        let Some(InstructionData::Binary { opcode: Opcode::Iadd, args: [a, b] }) = self.instruction(pointer).copied()
+        else {
+            return None;
+        };
+        match (a == start, b == start) {
+            (true, _) => Some(b),
+            (_, true) => Some(a),
+            (false, false) => {
+                let first = self.distance_from(start, a)?;
+                Some(self.ins().iadd(first, b))
+            }
+        }
     }
 
     /// As `ops::advance` does it.

@@ -47,6 +47,10 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) unrolled: usize,
     /// The references that the statements follow and that have been looked up.
     pub(crate) looked_up: Vec<LookedUp>,
+    /// The address that was made last.
+    pub(crate) made: Option<MadeAddress>,
+    /// The local variable that the statement before has given it to.
+    pub(crate) fresh: Option<(LocalId, MadeAddress)>,
     /// Operations of statements that are there twice for that, so far.
     pub(crate) doubled: usize,
     /// How many [`Finally`](staunch_ir::StatementKind::Finally) are around: what they store after a fault reads locals.
@@ -124,6 +128,14 @@ pub(crate) struct LookedUp {
     /// What it was looked up as.
     pub(crate) ty: Type,
     pub(crate) leads: Leads,
+}
+
+/// A reference to a variable, and where that is in the state.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct MadeAddress {
+    pub(crate) reference: clif::Value,
+    pub(crate) offset: clif::Value,
+    pub(crate) ty: Type,
 }
 
 /// Where a reference leads.
@@ -207,6 +219,8 @@ impl<'a, 'p> Function<'a, 'p> {
             copied: 0,
             unrolled: 0,
             looked_up: Vec::new(),
+            made: None,
+            fresh: None,
             doubled: 0,
             endings: 0,
             counters: Vec::new(),

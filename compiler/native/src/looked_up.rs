@@ -12,7 +12,9 @@
 //! It applies to a reference in a local variable, up to the last statement that follows it before it gets another value, where
 //! that is more than once, and where variables of the type are [expected](crate::expectation) in a few places. Since the
 //! statements are there twice, they are limited in size, and among those by the runtime no further reference is looked up for
-//! several. It may not assume where the reference leads: a pointer may be laid over any variable.
+//! several. A reference that the statement before has made of the
+//! address of such a variable leads there, and nothing is there twice. It may not assume where another reference leads: a pointer may be laid
+//! over any variable.
 
 use crate::function::{Flow, Function, Leads, LocalSlot, LookedUp};
 use cranelift_codegen::ir::{self as clif, InstBuilder};
@@ -61,7 +63,8 @@ impl<'p> Function<'_, 'p> {
     ) -> Option<(usize, usize, (Place, LocalId, Type))> {
         let is_known = self.looked_up.iter().any(|it| it.pointer == local);
         let is_variable = matches!(self.locals[local.index()], LocalSlot::Variable(_));
-        if is_known || !is_variable || self.module.expectations(ty).is_empty() {
+        let is_fresh = self.fresh(local, ty).is_some();
+        if is_known || !is_variable || !is_fresh && self.module.expectations(ty).is_empty() {
             return None;
         }
         let frame = Frame::of(self.module.program, self.routine);
@@ -83,12 +86,28 @@ impl<'p> Function<'_, 'p> {
                 break;
             }
         }
-        let (len, size) = last.filter(|(_, size)| uses > 1 && self.doubled + size <= MOST_IN_A_ROUTINE)?;
+        let (len, size) = last?;
+        let is_worth_it = is_fresh || uses > 1 && self.doubled + size <= MOST_IN_A_ROUTINE;
+        if !is_worth_it {
+            return None;
+        }
+        let size = if is_fresh { 0 } else { size };
         Some((len, size, (pointer, local, ty)))
+    }
+
+    /// Where a variable's reference leads that the statement before has made, if it is to such a variable itself.
+    fn fresh(&self, local: LocalId, ty: Type) -> Option<clif::Value> {
+        self.fresh.filter(|it| it.0 == local && it.1.ty == ty).map(|it| it.1.offset)
     }
 
     /// The statements of a run.
     pub(crate) fn looked_up_once(&mut self, run: &Run, statements: &'p [Statement]) -> Flow {
+        if let Some(offset) = self.fresh(run.local, run.ty) {
+            self.looked_up.push(LookedUp { pointer: run.local, ty: run.ty, leads: Leads::To(offset) });
+            let flow = self.block(statements);
+            self.looked_up.pop();
+            return flow;
+        }
         let reference = self.load_place(&run.pointer);
         let (offset, slow) = self.expected(reference, None, run.ty).expect("variables of the type are expected");
         let after = self.builder.create_block();
@@ -120,7 +139,7 @@ impl<'p> Function<'_, 'p> {
     }
 }
 
-fn local(pointer: &Place) -> Option<LocalId> {
+pub(crate) fn local(pointer: &Place) -> Option<LocalId> {
     match pointer.root {
         Root::Local(id) if pointer.projections.is_empty() => Some(id),
         Root::Local(_) | Root::Instance | Root::Globals | Root::Param(_) => None,

@@ -154,6 +154,9 @@ impl<'p> Function<'_, 'p> {
         if let Some(copies) = self.copies(body, continuing) {
             return self.turns_at_once(control, copies, [turn, after], body, continuing);
         }
+        if let Some((running, group)) = self.grouping(control, body) {
+            return self.groups_and_rest(control, &running, group, [turn, after], body);
+        }
         let frame = LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) };
         self.one_by_one(control, frame, turn, body, continuing)
     }

@@ -47,9 +47,10 @@ impl<'p> Function<'_, 'p> {
             self.counters.push(it);
             self.registers.push(register);
         }
-        let run = &mut |this: &mut Self| match this.unrolling(it) {
-            Some(unrolling) => this.turns_in_line(&running, unrolling),
-            None => this.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]),
+        let run = &mut |this: &mut Self| match this.in_lanes(&running).map_or_else(|| Err(this.unrolling(it)), Ok) {
+            Ok(flow) => flow,
+            Err(Some(unrolling)) => this.turns_in_line(&running, unrolling),
+            Err(None) => this.loop_under(&Control::Count(running), Known::For(running), &it.body, &[]),
         };
         let flow = match running.late {
             Some(_) if self.endings > 0 => self.before_faults_pass(run, &mut |this| this.set_late(&running)),

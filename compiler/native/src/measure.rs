@@ -2,6 +2,7 @@
 //! reads. The code generator says it when it has made the function, so it is of the code that runs.
 
 use crate::count::{CodeOf, Counted, Gap, Numbered};
+use crate::trimmed::Trimmed;
 use cranelift_codegen::ir::Function;
 use cranelift_codegen::{CompiledCode, binemit::CodeOffset};
 use cranelift_module::{DataId, FuncId, ModuleReloc, ModuleRelocTarget, default_libcall_names};
@@ -47,6 +48,9 @@ pub enum Callee {
     Outside(String),
 }
 
+/// What the code generator says of a function's code, and the code.
+pub(crate) type Code<'a> = (&'a CompiledCode, &'a Trimmed);
+
 /// A function that has just been made.
 pub(crate) struct Made {
     id: FuncId,
@@ -59,20 +63,20 @@ pub(crate) struct Made {
 
 impl Made {
     /// Of the code of a function.
-    pub(crate) fn of(code: Option<&CompiledCode>, function: &Function, id: FuncId, name: &str) -> Self {
+    pub(crate) fn of(code: Option<Code<'_>>, function: &Function, id: FuncId, name: &str) -> Self {
         let targets = code.map(|it| relocations(it, function, id)).unwrap_or_default();
         Self {
             id,
             name: name.to_owned(),
-            text: code.map_or(0, |it| it.buffer.total_size()),
-            frame: code.map_or(0, frame),
+            text: code.map_or(0, |it| it.1.place(it.0.buffer.total_size())),
+            frame: code.map_or(0, |it| frame(it.0)),
             targets: targets.into_iter().map(|it| it.1).collect(),
             counted: Err(Gap::All),
         }
     }
 
     /// The same, with the blocks of the code, which is of x86-64. Without marks of all loops, they are not known.
-    pub(crate) fn counted(self, code: Option<&CompiledCode>, function: &Function, marks: Option<&Numbered>) -> Self {
+    pub(crate) fn counted(self, code: Option<Code<'_>>, function: &Function, marks: Option<&Numbered>) -> Self {
         let counted = match (code, marks) {
             (Some(code), Some(marks)) => Counted::of(&code_of(code, function, self.id), marks),
             (None, _) => Err(Gap::All),
@@ -87,24 +91,25 @@ fn frame(code: &CompiledCode) -> u64 {
 }
 
 /// What the code refers to, and where.
-fn relocations(code: &CompiledCode, function: &Function, id: FuncId) -> Vec<(CodeOffset, ModuleRelocTarget)> {
+fn relocations((code, trimmed): Code<'_>, function: &Function, id: FuncId) -> Vec<(CodeOffset, ModuleRelocTarget)> {
     let relocations = code.buffer.relocs().iter().map(|it| ModuleReloc::from_mach_reloc(it, function, id));
-    relocations.map(|it| (it.offset, it.name)).collect()
+    relocations.map(|it| (trimmed.place(it.offset), it.name)).collect()
 }
 
-fn code_of<'a>(code: &'a CompiledCode, function: &Function, id: FuncId) -> CodeOf<'a> {
-    let place = |it: CodeOffset| usize::try_from(it).expect("code is in memory");
+fn code_of<'a>((code, trimmed): Code<'a>, function: &Function, id: FuncId) -> CodeOf<'a> {
+    let number = |it: CodeOffset| usize::try_from(it).expect("code is in memory");
+    let place = |it: CodeOffset| number(trimmed.place(it));
     let is_function = |it: &ModuleRelocTarget| match it {
         ModuleRelocTarget::User { namespace, .. } => *namespace == FUNCTIONS,
         ModuleRelocTarget::LibCall(_) | ModuleRelocTarget::KnownSymbol(_) => true,
         ModuleRelocTarget::FunctionOffset(..) => false,
     };
     let mut functions: Vec<_> =
-        relocations(code, function, id).into_iter().map(|(at, target)| (place(at), target)).collect();
+        relocations((code, trimmed), function, id).into_iter().map(|(at, target)| (number(at), target)).collect();
     functions.retain(|it| is_function(&it.1));
     functions.sort_by_key(|it| it.0);
     CodeOf {
-        bytes: code.code_buffer(),
+        bytes: &trimmed.bytes,
         starts: code.bb_starts.iter().map(|it| place(*it)).collect(),
         places: code.buffer.get_srclocs_sorted().iter().map(|it| (place(it.start), place(it.end), it.loc)).collect(),
         functions,

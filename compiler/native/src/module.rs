@@ -8,6 +8,7 @@ use crate::measure::{Made, Measures, measures};
 use crate::schedule::{merge, schedule};
 use crate::target::Aim;
 use crate::tidy::tidy;
+use crate::trimmed::Trimmed;
 use crate::unused::drop_unused_loads;
 use crate::{Error, signature, target};
 use cranelift_codegen::control::ControlPlane;
@@ -337,7 +338,11 @@ impl<'p> ModuleEmitter<'p> {
         } else {
             self.output.define_function(id, context).map_err(|error| reason(&error))
         };
-        let code = scheduled.as_ref().or(context.compiled_code());
+        let code = match &scheduled {
+            Some((code, trimmed)) => Some((code, trimmed.clone())),
+            None => context.compiled_code().map(|it| (it, Trimmed::none(it))),
+        };
+        let code = code.as_ref().map(|(code, trimmed)| (*code, trimmed));
         let made = Made::of(code, &context.func, id, name);
         let marks = is_marked.then_some(&marks);
         self.made.push(if self.counts { made.counted(code, &context.func, marks) } else { made });
@@ -349,7 +354,7 @@ impl<'p> ModuleEmitter<'p> {
     }
 
     /// Gives the function another order between the code generator's steps.
-    fn define_scheduled(&mut self, context: &mut Context, id: FuncId) -> Result<CompiledCode, String> {
+    fn define_scheduled(&mut self, context: &mut Context, id: FuncId) -> Result<(CompiledCode, Trimmed), String> {
         let (isa, control) = (self.output.isa(), &mut ControlPlane::default());
         merge(&mut context.func);
         context.optimize(isa, control).map_err(|error| reason(&error))?;
@@ -360,22 +365,34 @@ impl<'p> ModuleEmitter<'p> {
         let (function, domtree) = (&context.func, &context.domtree);
         let code = isa.compile_function(function, domtree, &mut Default::default(), false, control);
         let code = code.map_err(|error| reason(&error))?.apply_params(&function.params);
-        self.define_bytes(&code, function, id)?;
-        Ok(code)
+        let trimmed = match self.has_operands_in_memory {
+            true => Trimmed::of(&code, function),
+            false => Trimmed::none(&code),
+        };
+        self.define_bytes(&code, &trimmed, function, id)?;
+        Ok((code, trimmed))
     }
 
     fn define_plainly(&mut self, context: &mut Context, id: FuncId) -> Result<(), String> {
         let isa = target::plain_isa(self.output.isa());
         let code = context.compile(&*isa, &mut ControlPlane::default()).map_err(|error| reason(&error.inner))?;
         let code = code.clone();
-        self.define_bytes(&code, &context.func, id)
+        self.define_bytes(&code, &Trimmed::none(&code), &context.func, id)
     }
 
-    fn define_bytes(&mut self, code: &CompiledCode, function: &Function, id: FuncId) -> Result<(), String> {
-        let relocations = code.buffer.relocs().iter();
-        let relocations: Vec<_> = relocations.map(|it| ModuleReloc::from_mach_reloc(it, function, id)).collect();
-        let defined =
-            self.output.define_function_bytes(id, code.buffer.alignment.into(), code.code_buffer(), &relocations);
+    fn define_bytes(
+        &mut self,
+        code: &CompiledCode,
+        trimmed: &Trimmed,
+        function: &Function,
+        id: FuncId,
+    ) -> Result<(), String> {
+        let relocations = code.buffer.relocs().iter().map(|it| {
+            let relocation = ModuleReloc::from_mach_reloc(it, function, id);
+            ModuleReloc { offset: trimmed.place(relocation.offset), ..relocation }
+        });
+        let relocations: Vec<_> = relocations.collect();
+        let defined = self.output.define_function_bytes(id, code.buffer.alignment.into(), &trimmed.bytes, &relocations);
         defined.map_err(|error| reason(&error))
     }
 }

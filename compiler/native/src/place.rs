@@ -2,10 +2,10 @@
 
 use crate::address::{Address, Class, Kind};
 use crate::function::{Function, LocalSlot};
-use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC};
+use cranelift_codegen::ir::{self as clif, InstBuilder, InstructionData, Opcode, condcodes::IntCC, types};
 use cranelift_frontend::Variable;
 use staunch_ir::loops::constant_position;
-use staunch_ir::{ArrayId, Expr, FaultKind, FieldId, Location, Place, Projection, Root, Type};
+use staunch_ir::{Array, ArrayId, Expr, FaultKind, FieldId, Location, Place, Projection, Root, Type};
 
 /// Where the value of a place is.
 #[derive(Clone, Copy, Debug)]
@@ -88,10 +88,12 @@ impl Function<'_, '_> {
         let index = self.index(written);
         if needs_check {
             // Below the lower bound the difference wraps, and is too large as well.
-            let position = self.ins().iadd_imm_s(index, bounds.low.wrapping_neg());
             let last = bounds.high.abs_diff(bounds.low).cast_signed();
+            let narrow = self.narrow_index(index).filter(|_| is_of_32_bits(bounds));
+            let tested = self.ins().iadd_imm_s(narrow.unwrap_or(index), bounds.low.wrapping_neg());
+            let position = if narrow.is_some() { self.ins().uextend(types::I64, tested) } else { tested };
             if !self.seen.has(self.builder.current_block(), (index, id)) {
-                let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, position, last);
+                let outside = self.ins().icmp_imm_u(IntCC::UnsignedGreaterThan, tested, last);
                 self.fault_if(outside, FaultKind::IndexOutOfRange, at);
                 self.seen.note(self.builder.current_block(), (index, id));
                 self.note_index(written, id);
@@ -108,10 +110,26 @@ impl Function<'_, '_> {
         }
     }
 
+    /// The number of 32 bits whose sign an index has: a position that was tested at 32 bits is not extended by an instruction.
+    fn narrow_index(&self, index: clif::Value) -> Option<clif::Value> {
+        match self.instruction(index)? {
+            InstructionData::Unary { opcode: Opcode::Sextend, arg } => {
+                Some(*arg).filter(|it| self.builder.func.dfg.value_type(*it) == types::I32)
+            }
+            _ => None,
+        }
+    }
+
     fn element_at(&mut self, array: Address, position: clif::Value, stride: u64) -> Address {
         let stride = i64::try_from(stride).expect("verified IR: sizes are within 1 GiB");
         let distance = self.ins().imul_imm_s(position, stride);
         let base = self.ins().iadd(array.base, distance);
         Address { base, ..array }
     }
+}
+
+/// Whether a difference from the lower bound that wraps at 32 bits is beyond the last position.
+fn is_of_32_bits(it: Array) -> bool {
+    let [low, high] = [it.low, it.high].map(i32::try_from);
+    low.is_ok() && high.is_ok() && i32::try_from(it.high.abs_diff(it.low)).is_ok()
 }

@@ -25,8 +25,13 @@ impl Function<'_, '_> {
         self.builder.inst_results(call).first().copied()
     }
 
-    pub(crate) fn by_repr(&self, repr: Repr, value: clif::Value) -> (AbiParam, clif::Value) {
-        (self.c_param(repr), value)
+    /// An argument by value. A narrow number is extended here, and not by the call, so that a constant is one of 32 bits.
+    pub(crate) fn by_repr(&mut self, repr: Repr, value: clif::Value) -> (AbiParam, clif::Value) {
+        match repr {
+            Repr::Bool | Repr::U8 | Repr::U16 => (self.c_param(Repr::U32), self.ins().uextend(types::I32, value)),
+            Repr::I8 | Repr::I16 => (self.c_param(Repr::I32), self.ins().sextend(types::I32, value)),
+            Repr::I32 | Repr::U32 | Repr::I64 | Repr::U64 | Repr::F32 | Repr::F64 => (self.c_param(repr), value),
+        }
     }
 
     pub(crate) fn c_param(&self, repr: Repr) -> AbiParam {

@@ -21,6 +21,11 @@
 //! A constant that only code away from the common path needs, or that is handed to another block, is made there: the optimiser has it
 //! before the loop, in a register or in the frame all the time. It may not assume that a block away from the common path is never entered.
 
+use crate::at_32_bits::at_32_bits;
+use crate::away::copies_for_calls;
+use crate::dying::dying_first;
+use crate::overstored::drop_overstored;
+use crate::reloaded::drop_reloaded;
 use crate::unused::Uses;
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, BlockArg, BlockCall, Function, Inst, InstructionData, Opcode, Value};
@@ -31,7 +36,14 @@ const MOST_HANDED: usize = 4096;
 
 pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
     merge(function);
+    let names = drop_reloaded(function);
+    rename(function, &names, &HashSet::new());
+    drop_overstored(function);
     reuse_sums(function);
+    if has_operands_in_memory {
+        let names = at_32_bits(function);
+        rename(function, &names, &HashSet::new());
+    }
     let blocks: Vec<Block> = function.layout.blocks().collect();
     for block in &blocks {
         constants_near(function, *block);
@@ -40,6 +52,8 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
         return;
     }
     blocks.iter().for_each(|it| constants_second(function, *it));
+    copies_for_calls(function, &blocks);
+    dying_first(function);
     let uses = Uses::of_all(function);
     let mut handed = Handed::default();
     for block in blocks {
@@ -200,10 +214,13 @@ fn constants_near(function: &mut Function, block: Block) {
     let is_cold = function.layout.is_cold(block);
     let Some(last) = function.layout.last_inst(block) else { return };
     let mut made: HashMap<Value, Value> = HashMap::new();
-    let instructions: Vec<Inst> = if is_cold { function.layout.block_insts(block).collect() } else { vec![last] };
+    let is_call = |it: &Inst| function.dfg.insts[*it].opcode().is_call();
+    let is_wanted = |it: &Inst| is_cold || *it == last || is_call(it);
+    let instructions: Vec<Inst> = function.layout.block_insts(block).filter(is_wanted).collect();
     for inst in instructions {
+        let takes_all = is_cold || inst != last;
         let values: Vec<Value> =
-            if is_cold { function.dfg.inst_values(inst).collect() } else { handed_on(function, inst) };
+            if takes_all { function.dfg.inst_values(inst).collect() } else { handed_on(function, inst) };
         let far: Vec<(Value, Inst)> =
             values.iter().filter_map(|it| Some((*it, constant_of(function, *it, (block, last), inst)?))).collect();
         for (value, maker) in far {
@@ -214,7 +231,7 @@ fn constants_near(function: &mut Function, block: Block) {
         function.dfg.map_inst_values(inst, |value| {
             at += 1;
             // What a branch tests stays as it is.
-            if is_cold || at > arguments { made.get(&value).copied().unwrap_or(value) } else { value }
+            if takes_all || at > arguments { made.get(&value).copied().unwrap_or(value) } else { value }
         });
     }
 }

@@ -1,5 +1,5 @@
-//! What is known where the code continues, by what it has done on the way there without a branch: which checks of an index it
-//! has made, and what numbers integer variables are.
+//! What is known where the code continues, by what it has done on every way there: which checks of an index it has made, and,
+//! without a branch, what numbers integer variables are.
 
 use cranelift_codegen::ir as clif;
 use staunch_ir::interval::Range;
@@ -12,7 +12,7 @@ pub(crate) type Within = (clif::Value, ArrayId);
 const MOST: usize = 16;
 
 /// What is known in one block. Blocks are those that are current.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
     block: Option<clif::Block>,
     checked: Vec<Within>,
@@ -49,6 +49,21 @@ impl Seen {
         if self.block != block {
             *self = Self { block, ..Self::default() };
         }
+    }
+
+    /// What is known at the end of `block`, where ways part.
+    pub(crate) fn at(&self, block: Option<clif::Block>) -> Self {
+        if self.block == block { self.clone() } else { Self::default() }
+    }
+
+    /// The same, where one of the ways begins.
+    pub(crate) fn in_way(&self, way: clif::Block) -> Self {
+        Self { block: Some(way), ..self.clone() }
+    }
+
+    /// The same, where the ways meet: variables may have been written, but the index that was checked is a value.
+    pub(crate) fn after_ways(&self, next: clif::Block) -> Self {
+        Self { block: Some(next), checked: self.checked.clone(), ranges: Vec::new() }
     }
 
     /// The one way to `next` is out of `block`, where it has done what it does.

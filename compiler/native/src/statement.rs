@@ -2,6 +2,7 @@
 
 use crate::address::Address;
 use crate::function::{Flow, Function};
+use crate::looked_up::local;
 use crate::place::PlaceValue;
 use cranelift_codegen::ir::{self as clif, InstBuilder};
 use staunch_ir::{Block, Expr, ExprKind, Op, Place, Statement, StatementKind, Type};
@@ -14,6 +15,7 @@ impl<'p> Function<'_, 'p> {
 
     /// A block that control comes to only from the statements `before` it.
     pub(crate) fn block_after(&mut self, before: &'p [Statement], block: &'p [Statement]) -> Flow {
+        self.fresh = None;
         let mut rest = block;
         while let Some((statement, further)) = rest.split_first() {
             let flow = match self.next_run(rest) {
@@ -41,11 +43,16 @@ impl<'p> Function<'_, 'p> {
     fn statement(&mut self, statement: &'p Statement) -> Flow {
         let assigned = self.assigned(statement);
         let flow = self.emit(statement);
+        // What a branch or a loop has made at its end is made on one way alone.
+        if !matches!(statement.kind, StatementKind::Assign { .. }) {
+            self.fresh = None;
+        }
         self.note_written(statement, assigned);
         flow
     }
 
     fn emit(&mut self, statement: &'p Statement) -> Flow {
+        self.fresh = None;
         self.release_temporaries();
         self.note_statement(statement.at);
         match &statement.kind {
@@ -106,6 +113,8 @@ impl<'p> Function<'_, 'p> {
             PlaceValue::Variable(variable) => {
                 let value = self.scalar(value);
                 self.builder.def_var(variable, value);
+                let made = self.made.filter(|it| it.reference == value);
+                self.fresh = local(target).zip(made);
             }
             PlaceValue::Memory(address) => self.assign_to(value, target, address),
         }
@@ -157,14 +166,23 @@ impl<'p> Function<'_, 'p> {
         let (then_block, after) = (self.builder.create_block(), self.builder.create_block());
         if otherwise.is_empty() {
             self.test(condition, then_block, after);
+            let seen = self.seen.at(self.builder.current_block());
+            self.seen = seen.in_way(then_block);
             self.arm(then_block, then, after);
             self.go_on_in(after);
+            self.seen = seen.after_ways(after);
             return Flow::Continues;
         }
         let otherwise_block = self.builder.create_block();
         self.test(condition, then_block, otherwise_block);
-        let flow = [self.arm(then_block, then, after), self.arm(otherwise_block, otherwise, after)];
-        self.join(&flow, after)
+        let seen = self.seen.at(self.builder.current_block());
+        let flow = [(then_block, then), (otherwise_block, otherwise)].map(|(block, body)| {
+            self.seen = seen.in_way(block);
+            self.arm(block, body, after)
+        });
+        let flow = self.join(&flow, after);
+        self.seen = seen.after_ways(after);
+        flow
     }
 
     /// Flow one way or the other. A NOT costs nothing here.

@@ -134,11 +134,25 @@ impl Function<'_, '_> {
 
     /// A string function with an elementary result.
     pub(crate) fn text_scalar(&mut self, op: TextOp, operands: &[Expr]) -> clif::Value {
+        if let (TextOp::Len, [operand]) = (op, operands) {
+            return self.text_length(operand);
+        }
         let arguments = self.text_arguments(op, operands);
         let repr = op.result().expect("verified IR: a text operation with an elementary result");
         let result = self.c_param(repr);
         let value = self.call_runtime(&symbol(op, operands), &arguments, Some(result));
         value.expect("a function with a result")
+    }
+
+    /// `LEN`, of which an INT has no more than it can.
+    fn text_length(&mut self, operand: &Expr) -> clif::Value {
+        let text = self.text(operand);
+        let length = self.load_as(types::I16, text.address);
+        if text.ty.capacity <= i16::MAX.unsigned_abs() {
+            return length;
+        }
+        let most = self.integer(types::I16, i128::from(i16::MAX));
+        self.ins().umin(length, most)
     }
 
     fn text_arguments(&mut self, op: TextOp, operands: &[Expr]) -> Vec<(clif::AbiParam, clif::Value)> {

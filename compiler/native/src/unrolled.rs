@@ -22,8 +22,9 @@ use crate::function::{Flow, Function, LoopFrame};
 use crate::target::Aim;
 use cranelift_codegen::ir::{self as clif, InstBuilder, condcodes::IntCC, types};
 use staunch_ir::loops::running;
+use staunch_ir::shifted::shifted;
 use staunch_ir::visit::{self, Access};
-use staunch_ir::{For, Root, StatementKind, Step, Taking, Value, turns};
+use staunch_ir::{For, Root, Statement, StatementKind, Step, Taking, Value, turns};
 
 /// All turns of a loop that is gone come to no more operations than these.
 const MOST: usize = 256;
@@ -82,7 +83,7 @@ impl<'p> Function<'_, 'p> {
         for at in 0..it.count {
             self.set_fixed_counter(running, value, at > 0);
             value += it.step;
-            if self.turn_in_line(running, after, &mut is_left) == Flow::Leaves {
+            if self.turn_in_line(&running.it.body, after, &mut is_left) == Flow::Leaves {
                 return is_left;
             }
         }
@@ -102,7 +103,7 @@ impl<'p> Function<'_, 'p> {
                 self.set_further_counter(running, start, further);
             }
             further += it.step;
-            flow = self.turn_in_line(running, after, &mut is_left);
+            flow = self.turn_in_line(&running.it.body, after, &mut is_left);
             if flow == Flow::Leaves {
                 break;
             }
@@ -125,10 +126,10 @@ impl<'p> Function<'_, 'p> {
     }
 
     /// One turn; the next one begins where the code continues.
-    fn turn_in_line(&mut self, running: &Running<'p>, after: clif::Block, is_left: &mut bool) -> Flow {
+    pub(crate) fn turn_in_line(&mut self, body: &'p [Statement], after: clif::Block, is_left: &mut bool) -> Flow {
         self.release_temporaries();
         self.loops.push(LoopFrame { next: self.builder.create_block(), ..LoopFrame::to(after) });
-        let flow = self.block(&running.it.body);
+        let flow = self.block(body);
         let frame = self.loops.pop().expect("pushed above");
         *is_left |= frame.is_left;
         if !frame.is_continued {
@@ -141,12 +142,17 @@ impl<'p> Function<'_, 'p> {
         Flow::Continues
     }
 
-    fn set_fixed_counter(&mut self, running: &Running<'p>, value: i128, is_stored: bool) {
+    pub(crate) fn set_fixed_counter(&mut self, running: &Running<'p>, value: i128, is_stored: bool) {
         let value = self.integer(types::I64, value);
         self.set_counter(running, value, is_stored);
     }
 
-    fn set_further_counter(&mut self, running: &Running<'p>, start: clif::Value, further: i128) -> clif::Value {
+    pub(crate) fn set_further_counter(
+        &mut self,
+        running: &Running<'p>,
+        start: clif::Value,
+        further: i128,
+    ) -> clif::Value {
         let further = self.integer(types::I64, further);
         let value = self.ins().iadd(start, further);
         self.set_counter(running, value, true);
@@ -164,7 +170,7 @@ fn group(count: usize, size: usize, (reads, most_read): (usize, usize)) -> usize
 }
 
 /// The first value, the step, and how many there are; `None` where they are not constant, or none.
-fn values(it: &For) -> Option<(i128, i128, usize)> {
+pub(crate) fn values(it: &For) -> Option<(i128, i128, usize)> {
     let [first, last] = [&it.first, &it.last].map(|it| it.as_const().and_then(Value::as_integer));
     let (first, last, Step::Constant(step)) = (first?, last?, &it.step) else { return None };
     // As signed numbers of 64 bits.
@@ -191,7 +197,11 @@ fn reads(it: &For, around: &[&For]) -> usize {
 fn has_loop(it: &For) -> bool {
     let mut found = false;
     visit::statements(&it.body, &mut |it| {
-        found |= matches!(it.kind, StatementKind::For(_) | StatementKind::Loop { .. });
+        found |= match &it.kind {
+            // It is a look-up.
+            StatementKind::For(inner) => shifted(inner).is_none(),
+            kind => matches!(kind, StatementKind::Loop { .. }),
+        };
     });
     found
 }

@@ -12,6 +12,8 @@ pub(crate) struct Run {
     pub(crate) last: usize,
     pub(crate) end: usize,
     pub(crate) instructions: u64,
+    /// Where each of them begins.
+    pub(crate) begins: Vec<usize>,
     /// Where its calls begin and end.
     pub(crate) calls: Vec<(usize, usize)>,
     /// Where the blocks begin that may follow.
@@ -42,6 +44,7 @@ pub(crate) fn runs(
                     last: *at,
                     end: *at,
                     instructions: 0,
+                    begins: Vec::new(),
                     calls: Vec::new(),
                     next: Vec::new(),
                 });
@@ -49,6 +52,7 @@ pub(crate) fn runs(
             }
         };
         run.instructions += 1;
+        run.begins.push(*at);
         (run.last, run.end) = (*at, instruction.end);
         run.next.clone_from(next);
         if instruction.flow == Flow::Call {

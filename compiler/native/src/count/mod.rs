@@ -18,6 +18,10 @@ mod x86;
 mod function;
 mod sizes;
 
+use cranelift_codegen::CompiledCode;
+use std::collections::BTreeSet;
+
+pub(crate) use blocks::Run;
 pub use function::Gap;
 pub(crate) use function::{Call, CodeOf, Counted};
 pub(crate) use graph::{Costs, longest};
@@ -25,3 +29,9 @@ pub(crate) use mark::{Mark, Marks, Numbered};
 pub use mark::{Repeats, Why};
 pub(crate) use sizes::sizes;
 pub(crate) use unmarked::is_marked;
+
+/// The blocks of a function of x86-64; `None` if an instruction is not known.
+pub(crate) fn runs_of(code: &CompiledCode) -> Option<Vec<Run>> {
+    let starts: Option<BTreeSet<usize>> = code.bb_starts.iter().map(|it| usize::try_from(*it).ok()).collect();
+    blocks::runs(code.code_buffer(), &starts?, &x86::instruction)
+}
