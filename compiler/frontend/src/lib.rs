@@ -6,7 +6,6 @@ mod added;
 mod chart;
 mod declared;
 mod enabled;
-mod in_threads;
 mod index;
 mod said_once;
 mod testing;
@@ -62,7 +61,7 @@ use index::recorder::Recorder;
 use lex::{Declared, Known};
 use log::Log;
 use rustc_hash::FxHashSet;
-use staunch_ir::Program;
+use staunch_ir::{Program, in_threads};
 use types::coverage::Coverage;
 use types::declarations::Declarations;
 use types::whole::Whole;
@@ -400,7 +399,7 @@ fn parse_each<'s>(sources: &'s Sources, options: &Options) -> Vec<Option<Parsed<
     };
     match files.iter().map(|it| it.text.len()).sum::<usize>() < MANY_BYTES {
         true => (0..files.len()).map(parse).collect(),
-        false => in_threads::each(files.len(), parse),
+        false => in_threads::each((0..files.len()).collect(), parse),
     }
 }
 

@@ -41,6 +41,7 @@ pub mod alias;
 pub mod byte_copy;
 pub mod effects;
 pub mod faults;
+pub mod in_threads;
 pub mod interpret;
 pub mod layout;
 pub mod loops;

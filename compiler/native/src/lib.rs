@@ -12,6 +12,7 @@ mod target;
 mod address;
 mod at_32_bits;
 mod away;
+mod compiled;
 mod count;
 mod dying;
 mod inline_routine;

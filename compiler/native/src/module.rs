@@ -4,14 +4,13 @@ use crate::count::{Marks, Numbered, is_marked, sizes};
 use crate::debug::notes::Notes;
 use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
-use crate::measure::{Made, Measures, measures};
-use crate::schedule::{merge, schedule};
+use crate::compiled::{Queue, Waiting, plain};
+use crate::measure::{Code, Made, Measures, measures};
 use crate::target::Aim;
 use crate::tidy::tidy;
 use crate::trimmed::Trimmed;
 use crate::unused::drop_unused_loads;
-use crate::{Error, signature, target};
-use cranelift_codegen::control::ControlPlane;
+use crate::{Error, signature};
 use cranelift_codegen::ir::{AbiParam, Function, InstBuilder, MemFlagsData, Signature, Value, types};
 use cranelift_codegen::isa::CallConv;
 use cranelift_codegen::{CompiledCode, Context};
@@ -28,7 +27,7 @@ use target_lexicon::Architecture;
 
 /// Functions of more instructions are not optimised: that takes time that grows faster than they do,
 /// to minutes for a hundred thousand statements.
-const LARGE: usize = 30_000;
+pub(crate) const LARGE: usize = 30_000;
 
 /// The table of objects, and what code is made by that is known of them.
 struct References {
@@ -74,6 +73,8 @@ pub(crate) struct ModuleEmitter<'p> {
     pub(crate) has_operands_in_memory: bool,
     /// The size of each constant, in the order in which they were asked for.
     sizes: Vec<(DataId, u64)>,
+    /// The functions that wait for their code.
+    waiting: Queue,
     /// The functions, in the order in which they are made.
     made: Vec<Made>,
     /// The functions as text, where it is wanted.
@@ -115,6 +116,7 @@ impl<'p> ModuleEmitter<'p> {
             quiet: BTreeMap::new(),
             has_operands_in_memory: matches!(output.isa().triple().architecture, Architecture::X86_64),
             sizes: Vec::new(),
+            waiting: Queue::default(),
             made: Vec::with_capacity(program.routines.len()),
             listing: None,
             counts: false,
@@ -330,22 +332,44 @@ impl<'p> ModuleEmitter<'p> {
             marks.extend(sizes(&context.func));
         }
         let marks = Numbered::set(&mut context.func, &marks);
-        let mut scheduled = None;
+        let marks = Some(marks).filter(|_| is_marked);
+        if self.aim != Aim::Speed {
+            return self.define_at_once(context, id, name, marks);
+        }
+        let context = std::mem::replace(context, self.output.make_context());
+        let is_much = self.waiting.add(Waiting { context, id, name: name.to_owned(), marks });
+        if is_much { self.define_waiting() } else { Ok(()) }
+    }
+
+    /// Makes the code of all functions that wait for it.
+    pub(crate) fn define_waiting(&mut self) -> Result<(), Error> {
+        for (function, code) in self.waiting.compiled(self.output.isa(), self.has_operands_in_memory) {
+            let Waiting { context, id, name, marks } = function;
+            let defined = code.and_then(|(code, trimmed)| {
+                self.define_bytes(&code, &trimmed, &context.func, id)?;
+                Ok(self.note_made(Some((&code, &trimmed)), &context.func, id, &name, marks.as_ref()))
+            });
+            defined.map_err(|reason| Error::Code { function: name, reason })?;
+        }
+        Ok(())
+    }
+
+    fn define_at_once(
+        &mut self,
+        context: &mut Context,
+        id: FuncId,
+        name: &str,
+        marks: Option<Numbered>,
+    ) -> Result<(), Error> {
         let defined = if context.func.dfg.num_insts() > LARGE {
-            self.define_plainly(context, id)
-        } else if self.aim == Aim::Speed {
-            self.define_scheduled(context, id).map(|code| scheduled = Some(code))
+            let code = plain(context, self.output.isa());
+            code.and_then(|(code, trimmed)| self.define_bytes(&code, &trimmed, &context.func, id))
         } else {
             self.output.define_function(id, context).map_err(|error| reason(&error))
         };
-        let code = match &scheduled {
-            Some((code, trimmed)) => Some((code, trimmed.clone())),
-            None => context.compiled_code().map(|it| (it, Trimmed::none(it))),
-        };
+        let code = context.compiled_code().map(|it| (it, Trimmed::none(it)));
         let code = code.as_ref().map(|(code, trimmed)| (*code, trimmed));
-        let made = Made::of(code, &context.func, id, name);
-        let marks = is_marked.then_some(&marks);
-        self.made.push(if self.counts { made.counted(code, &context.func, marks) } else { made });
+        self.note_made(code, &context.func, id, name, marks.as_ref());
         if let Some(notes) = &mut self.notes {
             notes.add(context, id, self.output.isa());
         }
@@ -353,31 +377,16 @@ impl<'p> ModuleEmitter<'p> {
         defined.map_err(|reason| Error::Code { function: name.to_owned(), reason })
     }
 
-    /// Gives the function another order between the code generator's steps.
-    fn define_scheduled(&mut self, context: &mut Context, id: FuncId) -> Result<(CompiledCode, Trimmed), String> {
-        let (isa, control) = (self.output.isa(), &mut ControlPlane::default());
-        merge(&mut context.func);
-        context.optimize(isa, control).map_err(|error| reason(&error))?;
-        schedule(&mut context.func, self.has_operands_in_memory);
-        context.compute_cfg();
-        context.compute_domtree();
-        context.verify_if(isa).map_err(|error| reason(&error))?;
-        let (function, domtree) = (&context.func, &context.domtree);
-        let code = isa.compile_function(function, domtree, &mut Default::default(), false, control);
-        let code = code.map_err(|error| reason(&error))?.apply_params(&function.params);
-        let trimmed = match self.has_operands_in_memory {
-            true => Trimmed::of(&code, function),
-            false => Trimmed::none(&code),
-        };
-        self.define_bytes(&code, &trimmed, function, id)?;
-        Ok((code, trimmed))
-    }
-
-    fn define_plainly(&mut self, context: &mut Context, id: FuncId) -> Result<(), String> {
-        let isa = target::plain_isa(self.output.isa());
-        let code = context.compile(&*isa, &mut ControlPlane::default()).map_err(|error| reason(&error.inner))?;
-        let code = code.clone();
-        self.define_bytes(&code, &Trimmed::none(&code), &context.func, id)
+    fn note_made(
+        &mut self,
+        code: Option<Code<'_>>,
+        function: &Function,
+        id: FuncId,
+        name: &str,
+        marks: Option<&Numbered>,
+    ) {
+        let made = Made::of(code, function, id, name);
+        self.made.push(if self.counts { made.counted(code, function, marks) } else { made });
     }
 
     fn define_bytes(
@@ -406,7 +415,7 @@ pub(crate) fn define_data(module: &mut dyn Module, id: DataId, bytes: Vec<u8>) -
 }
 
 /// The whole chain of causes: Cranelift's own message is only the last of them.
-fn reason(error: &dyn core::error::Error) -> String {
+pub(crate) fn reason(error: &dyn core::error::Error) -> String {
     let mut text = error.to_string();
     let mut cause = error.source();
     while let Some(error) = cause {

@@ -86,6 +86,7 @@ pub(crate) fn emit_named(
     }
     quiet::emit(&mut module, &mut workspace)?;
     let entry_points = entry::emit(&mut module, &mut workspace)?;
+    module.define_waiting()?;
     let measures = module.measures([entry_points.init, entry_points.scan]);
     module.define_constants()?;
     Ok(Emitted { entry_points, listing: module.listing.unwrap_or_default(), measures, notes: module.notes })
