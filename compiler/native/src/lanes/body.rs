@@ -29,7 +29,7 @@ impl<'p> Body<'p> {
     /// Of a loop; `None` where its turns cannot be in lanes, whatever is the same storage.
     pub(super) fn of(it: &'p For, around: &[&'p For], routine: &'p Routine, known: Known<'_>) -> Option<Self> {
         let body = Self { variables: Vec::new(), stored: Vec::new(), read: Vec::new(), repr: None, operations: 0 };
-        let mut look = Look { of: it, routine, loops: around.to_vec(), known, body, repeated: 1 };
+        let mut look = Look { of: it, routine, loops: around.to_vec(), within: Vec::new(), known, body, repeated: 1 };
         look.statements(&it.body)?;
         let is_worth_it = !look.body.stored.is_empty() && look.body.operations <= MOST;
         is_worth_it.then_some(look.body)
@@ -78,7 +78,7 @@ fn is_same_index(a: &Expr, b: &Expr) -> bool {
     }
 }
 
-/// Whether an element is the one at the counter, or at a constant distance from it.
+/// Whether the last index of an element names a counter.
 pub(super) fn follows(place: &Place, counter: &Place) -> bool {
     let Some(Projection::Index { index, .. }) = place.projections.last() else { return false };
     names(index, counter)
@@ -110,6 +110,8 @@ struct Look<'p, 'k> {
     routine: &'p Routine,
     /// Those around, and those within around a statement.
     loops: Vec<&'p For>,
+    /// Those within alone.
+    within: Vec<&'p For>,
     known: Known<'k>,
     body: Body<'p>,
     /// The turns of the loop within, around a statement.
@@ -140,7 +142,9 @@ impl<'p> Look<'p, '_> {
         only_if(is_plain && count <= MOST_TURNS && self.repeated == 1)?;
         self.repeated = count;
         self.loops.push(inner);
+        self.within.push(inner);
         self.statements(&inner.body)?;
+        self.within.pop();
         self.loops.pop();
         self.repeated = 1;
         Some(())
@@ -150,7 +154,9 @@ impl<'p> Look<'p, '_> {
         self.number(target.ty)?;
         self.body.operations += self.repeated;
         if target.indices().next().is_some() {
-            only_if(self.place(target)? == Way::Further)?;
+            // With a counter of a loop within, it would be the element of another turn's, too: `a[i + j]`.
+            let is_of_turn = !self.within.iter().any(|it| follows(target, &it.counter));
+            only_if(is_of_turn && self.place(target)? == Way::Further)?;
             self.body.stored.push(target);
             return Some(());
         }
