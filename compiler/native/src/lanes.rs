@@ -10,11 +10,11 @@
 //! END_FOR                           END_FOR
 //! ```
 //!
-//! It applies on x86-64 to loops of a constant number of turns, which the lanes divide, whose bodies are assignments of reals of one type, made of sums,
-//! differences, products and quotients, and FOR loops of constant turns of such. A real that is read is the element at the counter, at
-//! some constant distance, or the same in all turns, or a variable that the turn has assigned before. What a turn stores no other reads or writes. So
-//! each lane computes what its turn does, in its order. Nothing in the loop faults, and nobody sees its variables while it runs. It may not
-//! assume that an element is at a multiple of the vector's size.
+//! It applies on x86-64 to loops of a constant number of turns, which the lanes divide, whose bodies are assignments of reals of one type, made of
+//! sums, differences, products and quotients, and FOR loops of constant turns of such. A real that is read is the element at the counter, at
+//! some constant distance, or the same in all turns, or a variable that the turn has assigned before. What a turn stores no other reads or
+//! writes: the last index of what is stored names no counter of a loop within. So each lane computes what its turn does, in its order. Nothing
+//! in the loop faults, and nobody sees its variables while it runs. It may not assume that an element is at a multiple of the vector's size.
 
 mod body;
 
