@@ -73,9 +73,10 @@ pub fn result(op: Op, operands: &[Interval]) -> Option<Interval> {
         }
         (Op::Min, [a, b]) => (a.range.0.min(b.range.0), a.range.1.min(b.range.1)),
         (Op::Max, [a, b]) => (a.range.0.max(b.range.0), a.range.1.max(b.range.1)),
+        // Where the limits are crossed, the upper one is the result.
         (Op::Limit, [low, a, high]) => {
-            let most = (a.range.0.min(high.range.0), a.range.1.min(high.range.1));
-            (most.0.max(low.range.0), most.1.max(low.range.1))
+            let least = (a.range.0.max(low.range.0), a.range.1.max(low.range.1));
+            (least.0.min(high.range.0), least.1.min(high.range.1))
         }
         (Op::Div, [a, b]) => quotient(a.range, *b)?,
         (Op::Mod, [a, b]) => remainder(a.range, *b)?,
