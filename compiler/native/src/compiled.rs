@@ -2,7 +2,7 @@
 //! module in the order in which they were given.
 
 use crate::count::Numbered;
-use crate::module::{LARGE, reason};
+use crate::error::reason;
 use crate::schedule::{merge, schedule};
 use crate::target;
 use crate::trimmed::Trimmed;
@@ -12,6 +12,9 @@ use cranelift_codegen::{CompiledCode, Context};
 use cranelift_module::FuncId;
 use staunch_ir::in_threads;
 
+/// Functions of more instructions are not optimised: that takes time that grows faster than they do,
+/// to minutes for a hundred thousand statements.
+pub(crate) const LARGE: usize = 30_000;
 /// From so many instructions on, more threads than one are worth their start.
 const MANY: usize = 4_000;
 /// So many wait at most: they take memory.
@@ -70,11 +73,7 @@ fn compiled(context: &mut Context, isa: &dyn TargetIsa, has_operands_in_memory: 
 }
 
 /// Gives the function another order between the code generator's steps.
-fn scheduled(
-    context: &mut Context,
-    isa: &dyn TargetIsa,
-    has_operands_in_memory: bool,
-) -> Result<CompiledCode, String> {
+fn scheduled(context: &mut Context, isa: &dyn TargetIsa, has_operands_in_memory: bool) -> Result<CompiledCode, String> {
     let control = &mut ControlPlane::default();
     merge(&mut context.func);
     context.optimize(isa, control).map_err(|error| reason(&error))?;

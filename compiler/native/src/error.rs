@@ -1,6 +1,6 @@
 //! What can go wrong: nothing in a program but its size.
 
-use core::fmt;
+use core::fmt::{self, Write as _};
 
 /// Why no code was made. With verified IR and a supported target, only size can be the cause.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,4 +34,15 @@ impl From<cranelift_module::ModuleError> for Error {
     fn from(error: cranelift_module::ModuleError) -> Self {
         Self::Output(error.to_string())
     }
+}
+
+/// The whole chain of causes: Cranelift's own message is only the last of them.
+pub(crate) fn reason(error: &dyn core::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        write!(text, ": {error}").expect("writing to a String does not fail");
+        cause = error.source();
+    }
+    text
 }

@@ -1,10 +1,11 @@
 //! One program on its way into a module: what is declared, and the data that code refers to.
 
+use crate::compiled::{LARGE, Queue, Waiting, plain};
 use crate::count::{Marks, Numbered, is_marked, sizes};
 use crate::debug::notes::Notes;
+use crate::error::reason;
 use crate::expectation::{Expectation, expectations};
 use crate::inline_routine::SmallRoutines;
-use crate::compiled::{Queue, Waiting, plain};
 use crate::measure::{Code, Made, Measures, measures};
 use crate::target::Aim;
 use crate::tidy::tidy;
@@ -24,10 +25,6 @@ use staunch_runtime::reference::encode;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::fmt::Write;
 use target_lexicon::Architecture;
-
-/// Functions of more instructions are not optimised: that takes time that grows faster than they do,
-/// to minutes for a hundred thousand statements.
-pub(crate) const LARGE: usize = 30_000;
 
 /// The table of objects, and what code is made by that is known of them.
 struct References {
@@ -347,7 +344,8 @@ impl<'p> ModuleEmitter<'p> {
             let Waiting { context, id, name, marks } = function;
             let defined = code.and_then(|(code, trimmed)| {
                 self.define_bytes(&code, &trimmed, &context.func, id)?;
-                Ok(self.note_made(Some((&code, &trimmed)), &context.func, id, &name, marks.as_ref()))
+                self.note_made(Some((&code, &trimmed)), &context.func, id, &name, marks.as_ref());
+                Ok(())
             });
             defined.map_err(|reason| Error::Code { function: name, reason })?;
         }
@@ -412,17 +410,6 @@ pub(crate) fn define_data(module: &mut dyn Module, id: DataId, bytes: Vec<u8>) -
     data.set_align(8);
     data.define(bytes.into_boxed_slice());
     Ok(module.define_data(id, &data)?)
-}
-
-/// The whole chain of causes: Cranelift's own message is only the last of them.
-pub(crate) fn reason(error: &dyn core::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        write!(text, ": {error}").expect("writing to a String does not fail");
-        cause = error.source();
-    }
-    text
 }
 
 /// A local symbol, for debuggers and disassemblers; the number makes names unique.
