@@ -12,7 +12,7 @@ pub use recorder::Meaning;
 
 use crate::source::{Sources, Span};
 use crate::{Diagnostic, ast};
-use recorder::{Named, Offered, Recorder};
+use recorder::{Named, Offered, Recorder, Settled};
 use rustc_hash::FxHashMap;
 
 /// What the names of a program mean, for an editor. Sources with mistakes have an index, too: a name that could not be
@@ -89,7 +89,7 @@ impl Index {
     pub(crate) fn add(&mut self, recorder: Recorder, sources: &Sources) {
         let known: FxHashMap<Span, DefId> = self.ids().map(|(id, it)| (it.name, id)).collect();
         let mut uses: FxHashMap<Span, Meaning> = self.uses.drain(..).map(|it| (it.span, it.meaning)).collect();
-        let (found, offered, externals) = recorder.settled();
+        let Settled { uses: found, offered, externals } = recorder.settled();
         self.globals.extend(
             externals.iter().filter_map(|(own, global)| known.get(own).copied().zip(known.get(global).copied())),
         );

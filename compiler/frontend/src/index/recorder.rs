@@ -58,6 +58,15 @@ pub(crate) struct Offered {
     pub is_expected: bool,
 }
 
+/// All that was noted.
+pub(super) struct Settled {
+    /// The names with what they mean.
+    pub uses: FxHashMap<Span, Named>,
+    pub offered: Vec<Offered>,
+    /// The names of VAR_EXTERNALs, and where their global variables are declared.
+    pub externals: Vec<(Span, Span)>,
+}
+
 /// Notes what names mean. The last note of a name counts: a call's arguments are tried for each of
 /// several FUNCTIONs before one is chosen.
 #[derive(Debug, Default)]
@@ -116,8 +125,11 @@ impl Recorder {
         self.enumerators.borrow().get(&(owner, name.to_ascii_uppercase())).copied()
     }
 
-    /// The names with what they mean, what is offered, and VAR_EXTERNALs with their globals.
-    pub(super) fn settled(self) -> (FxHashMap<Span, Named>, Vec<Offered>, Vec<(Span, Span)>) {
-        (self.uses.into_inner(), self.offered.into_inner(), self.externals.into_inner())
+    pub(super) fn settled(self) -> Settled {
+        Settled {
+            uses: self.uses.into_inner(),
+            offered: self.offered.into_inner(),
+            externals: self.externals.into_inner(),
+        }
     }
 }
