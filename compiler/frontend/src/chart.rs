@@ -47,11 +47,25 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
             log.report(not_in(dialect, chart.span));
         }
         leave_out_numbers(&mut chart, pou, log);
+        note_actions(&chart, pou, log);
         match is_sound(&chart, pou, log) {
             true => write_out(&chart, pou, dialect),
             // Its steps are not known to them.
             false => pou.routines.retain(|it| it.kind != PouKind::Action),
         }
+    }
+}
+
+/// Notes what steps name: an action that several have is written out once.
+fn note_actions(chart: &Chart<'_>, pou: &Pou<'_>, log: &Log<'_>) {
+    if log.index.is_none() {
+        return;
+    }
+    let variables = pou.blocks.iter().flat_map(|it| &it.vars).flat_map(|it| &it.names);
+    let actions = pou.routines.iter().filter(|it| it.kind == PouKind::Action).map(|it| &it.name);
+    let declared: FxHashMap<_, _> = variables.chain(actions).map(|it| (Key(it.text), it.span)).collect();
+    for name in chart.steps.iter().flat_map(|it| &it.associations).map(|it| it.action) {
+        declared.get(&Key(name.text)).into_iter().for_each(|it| log.note_declared(name.span, *it));
     }
 }
 
