@@ -15,10 +15,10 @@
 use crate::unused::Uses;
 use cranelift_codegen::cursor::{Cursor, FuncCursor};
 use cranelift_codegen::ir::{Block, Function, Inst, InstBuilder, InstructionData, Opcode, Type, Value, types};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Makes it so everywhere; returns what values are called that are gone.
-pub(crate) fn at_32_bits(function: &mut Function) -> HashMap<Value, Value> {
+pub(crate) fn at_32_bits(function: &mut Function) -> FxHashMap<Value, Value> {
     let uses = Uses::of_all(function);
     let blocks: Vec<Block> = function.layout.blocks().collect();
     let instructions: Vec<Inst> = blocks.iter().flat_map(|it| function.layout.block_insts(*it)).collect();
@@ -30,8 +30,8 @@ pub(crate) fn at_32_bits(function: &mut Function) -> HashMap<Value, Value> {
 }
 
 /// The narrow loads that are extended at once.
-fn loads(function: &Function, uses: &Uses, instructions: &[Inst]) -> HashSet<Value> {
-    let mut found = HashSet::new();
+fn loads(function: &Function, uses: &Uses, instructions: &[Inst]) -> FxHashSet<Value> {
+    let mut found = FxHashSet::default();
     for inst in instructions {
         let opcode = function.dfg.insts[*inst].opcode();
         for value in function.dfg.inst_args(*inst) {
@@ -62,12 +62,12 @@ fn is_sum(function: &Function, inst: Inst) -> bool {
 
 #[derive(Default)]
 struct Wide {
-    loads: HashSet<Value>,
+    loads: FxHashSet<Value>,
     /// Narrow values, and the ones of 32 or 64 bits that they are parts of.
-    of: HashMap<Value, Value>,
+    of: FxHashMap<Value, Value>,
     /// Those of `of` that are extended without a sign.
-    extended: HashMap<Value, Value>,
-    names: HashMap<Value, Value>,
+    extended: FxHashMap<Value, Value>,
+    names: FxHashMap<Value, Value>,
 }
 
 impl Wide {

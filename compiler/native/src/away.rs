@@ -13,12 +13,12 @@
 
 use cranelift_codegen::cursor::{Cursor, FuncCursor};
 use cranelift_codegen::ir::{Block, Function, Inst, InstBuilder, Value, types};
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 pub(crate) fn copies_for_calls(function: &mut Function, blocks: &[Block]) {
     let (away, common): (Vec<Block>, Vec<Block>) = blocks.iter().partition(|it| function.layout.is_cold(**it));
     let given = |it: Block| calls(function, it).into_iter().flat_map(|it| function.dfg.inst_args(it).iter().copied());
-    let mut kept: HashSet<Value> = common.into_iter().flat_map(given).collect();
+    let mut kept: FxHashSet<Value> = common.into_iter().flat_map(given).collect();
     kept.extend(function.layout.entry_block().into_iter().flat_map(|it| function.dfg.block_params(it)));
     for block in away {
         for call in calls(function, block) {
@@ -31,7 +31,7 @@ fn calls(function: &Function, block: Block) -> Vec<Inst> {
     function.layout.block_insts(block).filter(|it| function.dfg.insts[*it].opcode().is_call()).collect()
 }
 
-fn copies_for(function: &mut Function, block: Block, call: Inst, kept: &HashSet<Value>) {
+fn copies_for(function: &mut Function, block: Block, call: Inst, kept: &FxHashSet<Value>) {
     for at in 0..function.dfg.inst_args(call).len() {
         let value = function.dfg.inst_args(call)[at];
         let maker = function.dfg.value_def(value).inst();

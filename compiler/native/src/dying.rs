@@ -11,7 +11,7 @@
 
 use crate::unused::Uses;
 use cranelift_codegen::ir::{Block, Function, Inst, InstructionData, Opcode, Value, ValueDef, types};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 pub(crate) fn dying_first(function: &mut Function) {
     let uses = Uses::of_all(function);
@@ -22,9 +22,9 @@ pub(crate) fn dying_first(function: &mut Function) {
 
 fn in_block(function: &mut Function, uses: &Uses, block: Block) {
     // How often a value is used from here on to the block's end.
-    let mut later: HashMap<Value, usize> = HashMap::new();
+    let mut later: FxHashMap<Value, usize> = FxHashMap::default();
     let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
-    let mut here: HashMap<Value, usize> = HashMap::new();
+    let mut here: FxHashMap<Value, usize> = FxHashMap::default();
     for inst in &instructions {
         function.dfg.inst_values(*inst).for_each(|it| *here.entry(it).or_default() += 1);
     }

@@ -11,9 +11,10 @@ use crate::signature::{POINTER, clif_type, result_type};
 use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
+use rustc_hash::FxHashMap;
 use staunch_ir::effects::Effects;
 use staunch_ir::{Const, For, LocalId, Mode, Program, Routine, RoutineId, Statement, Type};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// More variables than this make the construction of SSA form slow; the rest live in the frame.
 const MAX_VARIABLES: usize = 1000;
@@ -67,8 +68,8 @@ pub(crate) struct Function<'a, 'p> {
     pub(crate) temporaries: Temporaries,
     /// Where code is made for debugging.
     pub(crate) noted: Option<Noted>,
-    functions: HashMap<FuncId, clif::FuncRef>,
-    data: HashMap<DataId, clif::GlobalValue>,
+    functions: FxHashMap<FuncId, clif::FuncRef>,
+    data: FxHashMap<DataId, clif::GlobalValue>,
     result: Option<(LocalId, Type)>,
 }
 
@@ -230,8 +231,8 @@ impl<'a, 'p> Function<'a, 'p> {
             faults: Faults::default(),
             temporaries: Temporaries::default(),
             noted,
-            functions: HashMap::new(),
-            data: HashMap::new(),
+            functions: FxHashMap::default(),
+            data: FxHashMap::default(),
             result: routine.result.zip(result_type(routine)),
         };
         function.place_locals(effects);

@@ -17,8 +17,8 @@ use cranelift_codegen::ir::{
     Block, ExternalName, FuncRef, Function, GlobalValueData, Inst, Opcode, UserExternalName, UserExternalNameRef, Value,
 };
 use cranelift_module::FuncId;
+use rustc_hash::FxHashMap;
 use std::borrow::Cow;
-use std::collections::HashMap;
 
 /// A routine of more instructions is called.
 const SMALL: usize = 96;
@@ -32,7 +32,7 @@ const PART: usize = 2;
 
 /// The code of the small routines so far.
 #[derive(Default)]
-pub(crate) struct SmallRoutines(HashMap<FuncId, Small>);
+pub(crate) struct SmallRoutines(FxHashMap<FuncId, Small>);
 
 struct Small {
     function: Function,
@@ -79,7 +79,7 @@ impl SmallRoutines {
 }
 
 pub(crate) struct Inliner<'a> {
-    small: &'a HashMap<FuncId, Small>,
+    small: &'a FxHashMap<FuncId, Small>,
     /// By so many instructions the caller may still grow.
     left: usize,
     left_of_frames: u32,

@@ -3,8 +3,9 @@
 use crate::count::{Call, Costs, Counted, Gap, Repeats, Why, longest};
 use crate::measure::{Callee, Measures};
 use crate::outside::instructions_outside;
+use rustc_hash::FxHashMap;
 use staunch_ir::Location;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 /// What is known of how many instructions a call runs at most.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -30,7 +31,7 @@ pub enum Unknown {
 impl Measures {
     /// Of `staunch_scan`, where `makes` says which calls of a caller are made.
     pub fn longest_scan(&self, makes: &dyn Fn(usize, &Callee) -> bool) -> Longest {
-        let mut search = Search { measures: self, makes, done: HashMap::new(), unknown: BTreeSet::new() };
+        let mut search = Search { measures: self, makes, done: FxHashMap::default(), unknown: BTreeSet::new() };
         let (instructions, _) = search.function(self.scan);
         Longest { instructions, path: search.path(), unknown: search.unknown }
     }
@@ -40,7 +41,7 @@ struct Search<'m> {
     measures: &'m Measures,
     makes: &'m dyn Fn(usize, &Callee) -> bool,
     /// For each function: its number, and the call in it that is the longest.
-    done: HashMap<usize, (u64, Option<(Callee, u64)>)>,
+    done: FxHashMap<usize, (u64, Option<(Callee, u64)>)>,
     unknown: BTreeSet<Unknown>,
 }
 
@@ -53,7 +54,7 @@ impl Search<'_> {
         let function = &self.measures.functions[at];
         let found = match &function.counted {
             Ok(counted) => {
-                let mut way = Way { search: self, at, counted, heads: HashMap::new(), deepest: None };
+                let mut way = Way { search: self, at, counted, heads: FxHashMap::default(), deepest: None };
                 let instructions = longest(&counted.nodes, &mut way);
                 (instructions, way.deepest)
             }
@@ -99,7 +100,7 @@ struct Way<'w, 'm> {
     at: usize,
     counted: &'w Counted<Callee>,
     /// The start of the loop that each mark is of.
-    heads: HashMap<u32, usize>,
+    heads: FxHashMap<u32, usize>,
     deepest: Option<(Callee, u64)>,
 }
 

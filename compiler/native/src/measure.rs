@@ -6,7 +6,8 @@ use crate::trimmed::Trimmed;
 use cranelift_codegen::ir::Function;
 use cranelift_codegen::{CompiledCode, binemit::CodeOffset};
 use cranelift_module::{DataId, FuncId, ModuleReloc, ModuleRelocTarget, default_libcall_names};
-use std::collections::{BTreeSet, HashMap};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeSet;
 
 /// Next to a frame are the caller's frame pointer and the address to return to.
 const FRAME_ENDS: u64 = 16;
@@ -119,10 +120,10 @@ fn code_of<'a>((code, trimmed): Code<'a>, function: &Function, id: FuncId) -> Co
 
 /// What the functions' numbers mean, when all are made.
 pub(crate) struct Names {
-    functions: HashMap<FuncId, usize>,
+    functions: FxHashMap<FuncId, usize>,
     /// The symbols that are not the program's own.
-    outside: HashMap<FuncId, String>,
-    constants: HashMap<DataId, usize>,
+    outside: FxHashMap<FuncId, String>,
+    constants: FxHashMap<DataId, usize>,
 }
 
 impl Names {
@@ -159,7 +160,7 @@ const DATA: u32 = 1;
 /// Of all functions, with those that others implement, and the sizes of constants.
 pub(crate) fn measures(
     made: &[Made],
-    outside: HashMap<FuncId, String>,
+    outside: FxHashMap<FuncId, String>,
     sizes: &[(DataId, u64)],
     [init, scan]: [FuncId; 2],
 ) -> Measures {

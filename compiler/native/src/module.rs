@@ -17,12 +17,13 @@ use cranelift_codegen::isa::CallConv;
 use cranelift_codegen::{CompiledCode, Context};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_module::{DataDescription, DataId, FuncId, Linkage, Module, ModuleReloc};
+use rustc_hash::{FxHashMap, FxHashSet};
 use staunch_ir::effects::Effects;
 use staunch_ir::layout::{Layout, usize_of};
 use staunch_ir::reference::Targets;
 use staunch_ir::{Program, Repr, Routine, RoutineId, RoutineKind, Type};
 use staunch_runtime::reference::encode;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use target_lexicon::Architecture;
 
@@ -31,11 +32,11 @@ struct References {
     table: DataId,
     count: u32,
     /// The kinds and numbers of the types of those in no pool.
-    types: HashSet<(u32, u32)>,
+    types: FxHashSet<(u32, u32)>,
 }
 
 /// The types of the objects that are in no pool.
-fn types_of_objects(words: &[u32]) -> HashSet<(u32, u32)> {
+fn types_of_objects(words: &[u32]) -> FxHashSet<(u32, u32)> {
     let count = words.first().map_or(0, |it| usize_of(u64::from(*it)));
     let all = words.get(encode::HEAD..).unwrap_or_default().chunks_exact(encode::OBJECT).take(count);
     let nodes = all.filter(|it| it[3] == 0).map(|it| usize_of(u64::from(it[4])));
@@ -53,16 +54,16 @@ pub(crate) struct ModuleEmitter<'p> {
     pub(crate) output: &'p mut dyn Module,
     pub(crate) aim: Aim,
     functions: Vec<FuncId>,
-    imports: HashMap<String, FuncId>,
+    imports: FxHashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
-    constants: HashMap<Vec<u8>, DataId>,
+    constants: FxHashMap<Vec<u8>, DataId>,
     /// A scan may continue after a fault.
     pub(crate) handles_faults: bool,
     /// Where something follows or makes a reference.
     references: Option<References>,
     /// Where they lead, and what code compares them with, by the types that are looked for.
     targets: Option<Targets<'p>>,
-    expectations: HashMap<Type, Vec<Expectation>>,
+    expectations: FxHashMap<Type, Vec<Expectation>>,
     small: SmallRoutines,
     /// The functions that keep all registers, by those of the runtime that they call, and how many numbers they are given.
     pub(crate) quiet: BTreeMap<&'static str, (FuncId, usize)>,
@@ -104,11 +105,11 @@ impl<'p> ModuleEmitter<'p> {
             scanned,
             effects,
             functions: Vec::with_capacity(program.routines.len()),
-            imports: HashMap::new(),
-            constants: HashMap::new(),
+            imports: FxHashMap::default(),
+            constants: FxHashMap::default(),
             references: None,
             targets: None,
-            expectations: HashMap::new(),
+            expectations: FxHashMap::default(),
             small: SmallRoutines::default(),
             quiet: BTreeMap::new(),
             has_operands_in_memory: matches!(output.isa().triple().architecture, Architecture::X86_64),

@@ -17,16 +17,16 @@
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::immediates::Offset32;
 use cranelift_codegen::ir::{AliasRegion, Block, Function, Inst, InstructionData, Opcode, Type, Value};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// More places are not remembered at once.
 const MOST: usize = 64;
 
 /// What values are called that are gone.
-pub(crate) fn drop_reloaded(function: &mut Function) -> HashMap<Value, Value> {
+pub(crate) fn drop_reloaded(function: &mut Function) -> FxHashMap<Value, Value> {
     let flow = ControlFlowGraph::with_function(function);
-    let mut ends: HashMap<Block, Memory> = HashMap::new();
-    let mut names = HashMap::new();
+    let mut ends: FxHashMap<Block, Memory> = FxHashMap::default();
+    let mut names = FxHashMap::default();
     for block in in_order(function, &flow) {
         let before: Vec<Option<&Memory>> = flow.pred_iter(block).map(|it| ends.get(&it.block)).collect();
         let mut memory = Memory::at_start(&before);
@@ -45,7 +45,7 @@ pub(crate) fn drop_reloaded(function: &mut Function) -> HashMap<Value, Value> {
 /// The blocks, each after all that lead to it but those that lead back.
 fn in_order(function: &Function, flow: &ControlFlowGraph) -> Vec<Block> {
     let Some(entry) = function.layout.entry_block() else { return Vec::new() };
-    let (mut found, mut seen) = (Vec::new(), HashSet::from([entry]));
+    let (mut found, mut seen) = (Vec::new(), FxHashSet::from_iter([entry]));
     let mut open = vec![(entry, flow.succ_iter(entry).collect::<Vec<_>>())];
     while let Some((block, rest)) = open.last_mut() {
         match rest.pop() {

@@ -29,7 +29,7 @@ use crate::reloaded::drop_reloaded;
 use crate::unused::Uses;
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, BlockArg, BlockCall, Function, Inst, InstructionData, Opcode, Value};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// More results of a function stay where they are.
 const MOST_HANDED: usize = 4096;
@@ -37,12 +37,12 @@ const MOST_HANDED: usize = 4096;
 pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
     merge(function);
     let names = drop_reloaded(function);
-    rename(function, &names, &HashSet::new());
+    rename(function, &names, &FxHashSet::default());
     drop_overstored(function);
     reuse_sums(function);
     if has_operands_in_memory {
         let names = at_32_bits(function);
-        rename(function, &names, &HashSet::new());
+        rename(function, &names, &FxHashSet::default());
     }
     let blocks: Vec<Block> = function.layout.blocks().collect();
     for block in &blocks {
@@ -70,8 +70,8 @@ pub(crate) fn schedule(function: &mut Function, has_operands_in_memory: bool) {
 /// Results that are handed to a block of their own.
 #[derive(Default)]
 struct Handed {
-    names: HashMap<Value, Value>,
-    jumps: HashSet<Inst>,
+    names: FxHashMap<Value, Value>,
+    jumps: FxHashSet<Inst>,
 }
 
 impl Handed {
@@ -126,13 +126,13 @@ fn only_next(function: &Function, flow: &ControlFlowGraph, block: Block) -> Opti
 /// optimiser does that so that no register holds it, but in a loop two would hold the counter, before and after its step.
 fn reuse_sums(function: &mut Function) {
     let flow = ControlFlowGraph::with_function(function);
-    let mut names = HashMap::new();
+    let mut names = FxHashMap::default();
     let blocks: Vec<Block> = function.layout.blocks().collect();
     for block in blocks {
         let mut ways = flow.pred_iter(block);
         let (Some(way), None) = (ways.next(), ways.next()) else { continue };
         let known = handed_on(function, way.inst).into_iter().filter_map(|it| Some((sum(function, it)?, it)));
-        let known: HashMap<Sum, Value> =
+        let known: FxHashMap<Sum, Value> =
             known.filter(|it| function.layout.inst_block(maker(function, it.1)) == Some(way.block)).collect();
         let instructions: Vec<Inst> = function.layout.block_insts(block).collect();
         for inst in instructions {
@@ -143,7 +143,7 @@ fn reuse_sums(function: &mut Function) {
             }
         }
     }
-    rename(function, &names, &HashSet::new());
+    rename(function, &names, &FxHashSet::default());
 }
 
 /// A value, and the constant that is added to it.
@@ -165,7 +165,7 @@ fn maker(function: &Function, value: Value) -> Inst {
 }
 
 /// Gives values other names, except in these instructions.
-fn rename(function: &mut Function, names: &HashMap<Value, Value>, except: &HashSet<Inst>) {
+fn rename(function: &mut Function, names: &FxHashMap<Value, Value>, except: &FxHashSet<Inst>) {
     if names.is_empty() {
         return;
     }
@@ -178,7 +178,7 @@ fn rename(function: &mut Function, names: &HashMap<Value, Value>, except: &HashS
     }
 }
 
-fn last_name(names: &HashMap<Value, Value>, mut value: Value) -> Value {
+fn last_name(names: &FxHashMap<Value, Value>, mut value: Value) -> Value {
     while let Some(next) = names.get(&value) {
         value = *next;
     }
@@ -213,7 +213,7 @@ fn is_number(function: &Function, value: Value) -> bool {
 fn constants_near(function: &mut Function, block: Block) {
     let is_cold = function.layout.is_cold(block);
     let Some(last) = function.layout.last_inst(block) else { return };
-    let mut made: HashMap<Value, Value> = HashMap::new();
+    let mut made: FxHashMap<Value, Value> = FxHashMap::default();
     let is_call = |it: &Inst| function.dfg.insts[*it].opcode().is_call();
     let is_wanted = |it: &Inst| is_cold || *it == last || is_call(it);
     let instructions: Vec<Inst> = function.layout.block_insts(block).filter(is_wanted).collect();
@@ -271,13 +271,14 @@ struct Order {
     before: Vec<Inst>,
     after: Vec<Inst>,
     /// The operations that use up what the block loads or computes.
-    noted: HashSet<Inst>,
+    noted: FxHashSet<Inst>,
 }
 
 impl Order {
     fn of(function: &Function, uses: &Uses, block: Block) -> Self {
         let before: Vec<Inst> = function.layout.block_insts(block).collect();
-        let mut search = Search { function, uses, users: HashMap::new(), missing: HashMap::new(), after: Vec::new() };
+        let mut search =
+            Search { function, uses, users: FxHashMap::default(), missing: FxHashMap::default(), after: Vec::new() };
         for inst in &before {
             search.note(*inst, block);
         }
@@ -310,9 +311,9 @@ struct Search<'a> {
     function: &'a Function,
     uses: &'a Uses,
     /// Which operations use the results of an instruction of the block.
-    users: HashMap<Inst, Vec<Inst>>,
+    users: FxHashMap<Inst, Vec<Inst>>,
     /// Of each operation that is not in the new order yet, how many operands of the block are not.
-    missing: HashMap<Inst, usize>,
+    missing: FxHashMap<Inst, usize>,
     after: Vec<Inst>,
 }
 

@@ -5,7 +5,8 @@ use super::mark::{Mark, Numbered, Repeats};
 use super::{graph, x86};
 use cranelift_codegen::ir::SourceLoc;
 use cranelift_module::ModuleRelocTarget;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use rustc_hash::FxHashMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A frame is touched page by page, in a loop where it has many pages.
 const PAGE: u64 = 4096;
@@ -60,7 +61,7 @@ pub(crate) struct Counted<C> {
 impl Counted<ModuleRelocTarget> {
     pub(crate) fn of(code: &CodeOf<'_>, marks: &Numbered) -> Result<Self, Gap> {
         let runs = runs(code.bytes, &code.starts, &x86::instruction).ok_or(Gap::Instruction)?;
-        let positions: HashMap<usize, usize> = runs.iter().enumerate().map(|(at, it)| (it.start, at)).collect();
+        let positions: FxHashMap<usize, usize> = runs.iter().enumerate().map(|(at, it)| (it.start, at)).collect();
         let nodes = runs.iter().map(|it| node(it, code, marks, &positions)).collect::<Option<Vec<Node>>>();
         let nodes = nodes.ok_or(Gap::Call)?;
         let mut before = vec![Vec::new(); nodes.len()];
@@ -121,7 +122,7 @@ impl<C> Counted<C> {
     }
 }
 
-fn node(run: &Run, code: &CodeOf<'_>, marks: &Numbered, positions: &HashMap<usize, usize>) -> Option<Node> {
+fn node(run: &Run, code: &CodeOf<'_>, marks: &Numbered, positions: &FxHashMap<usize, usize>) -> Option<Node> {
     let within = code.functions.iter().filter(|it| (run.start..run.end).contains(&it.0));
     let targets: Vec<&ModuleRelocTarget> = within.map(|it| &it.1).collect();
     if targets.len() != run.calls.len() {

@@ -4,16 +4,16 @@
 use super::mark::{Mark, Marks};
 use cranelift_codegen::flowgraph::ControlFlowGraph;
 use cranelift_codegen::ir::{Block, Function, Inst};
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 /// Whether all that leads back to a block that control came from has a mark.
 pub(crate) fn is_marked(function: &Function, marks: &Marks) -> bool {
     let repeats = |it: &(Inst, Mark)| matches!(it.1, Mark::Repeats(_)).then_some(it.0);
-    let marked: HashSet<Inst> = marks.iter().filter_map(repeats).collect();
+    let marked: FxHashSet<Inst> = marks.iter().filter_map(repeats).collect();
     let graph = ControlFlowGraph::with_function(function);
     let Some(entry) = function.layout.entry_block() else { return true };
     let next = |it: Block| graph.succ_iter(it).collect::<Vec<_>>();
-    let (mut seen, mut around) = (HashSet::from([entry]), HashSet::from([entry]));
+    let (mut seen, mut around) = (FxHashSet::from_iter([entry]), FxHashSet::from_iter([entry]));
     let mut open = vec![(entry, next(entry))];
     while let Some((block, rest)) = open.last_mut() {
         let block = *block;

@@ -3,9 +3,9 @@
 use gimli::constants::{DW_AT_name, DW_AT_type, DwAt, DwTag};
 use gimli::write::{Address, AttributeValue, DwarfUnit, Range, UnitEntryId};
 use gimli::{Encoding, Format};
+use rustc_hash::FxHashMap;
 use staunch_ir::layout::Layout;
 use staunch_ir::{Program, Type};
-use std::collections::HashMap;
 
 /// What debuggers of the last ten years read.
 const ENCODING: Encoding = Encoding { format: Format::Dwarf32, version: 4, address_size: 8 };
@@ -15,9 +15,9 @@ pub(crate) struct Entries<'a> {
     pub(crate) layout: &'a Layout,
     pub(crate) dwarf: DwarfUnit,
     /// The entries of types.
-    pub(crate) types: HashMap<Type, UnitEntryId>,
+    pub(crate) types: FxHashMap<Type, UnitEntryId>,
     /// Those of pointers, by what they lead to.
-    pub(crate) pointers: HashMap<Type, UnitEntryId>,
+    pub(crate) pointers: FxHashMap<Type, UnitEntryId>,
     /// The word that leads to the state.
     pub(crate) state: Address,
     /// The code that is described.
@@ -30,8 +30,8 @@ impl<'a> Entries<'a> {
             program,
             layout,
             dwarf: DwarfUnit::new(ENCODING),
-            types: HashMap::new(),
-            pointers: HashMap::new(),
+            types: FxHashMap::default(),
+            pointers: FxHashMap::default(),
             state,
             ranges: Vec::new(),
         }

@@ -8,8 +8,8 @@ use cranelift_codegen::isa::unwind::systemv;
 use cranelift_codegen::{CompiledCode, Context};
 use cranelift_module::{DataId, FuncId};
 use gimli::write::CommonInformationEntry;
+use rustc_hash::FxHashSet;
 use staunch_ir::{Location, RoutineId};
-use std::collections::HashSet;
 
 /// Of a whole program.
 #[derive(Debug)]
@@ -92,7 +92,7 @@ fn home(code: &CompiledCode, slot: StackSlot) -> i64 {
 fn rows(code: &CompiledCode, places: &[Place]) -> Vec<Row> {
     let mut rows: Vec<Row> = Vec::new();
     let mut last = None;
-    let mut begun = HashSet::new();
+    let mut begun = FxHashSet::default();
     // What is in front of all places sets up the frame.
     rows.extend(places.first().map(|it| Row { offset: 0, at: it.at, is_statement: true }));
     for range in code.buffer.get_srclocs_sorted() {

@@ -5,7 +5,7 @@ use cranelift_object::object::write::{Object, Relocation, SectionId, SymbolId};
 use cranelift_object::object::{RelocationEncoding, RelocationFlags, RelocationKind, SectionKind};
 use gimli::write::{EndianVec, RelocateWriter, RelocationTarget, Sections, Writer};
 use gimli::{LittleEndian, SectionId as Name};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 /// A section that is being written.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ impl RelocateWriter for Section {
 
 /// Puts all sections into an object, in which a number of a symbol is a position in `symbols`.
 pub(crate) fn put(object: &mut Object<'_>, sections: &Sections<Section>, symbols: &[SymbolId]) -> Result<(), Error> {
-    let mut ids: HashMap<Name, SectionId> = HashMap::new();
+    let mut ids: FxHashMap<Name, SectionId> = FxHashMap::default();
     sections.for_each(|name, section| -> Result<(), Error> {
         if section.bytes.len() > 0 {
             let id = object.add_section(Vec::new(), name.name().as_bytes().to_vec(), SectionKind::Debug);
@@ -57,7 +57,7 @@ fn relocate(
     object: &mut Object<'_>,
     section: SectionId,
     it: &gimli::write::Relocation,
-    ids: &HashMap<Name, SectionId>,
+    ids: &FxHashMap<Name, SectionId>,
     symbols: &[SymbolId],
 ) -> Result<(), Error> {
     let symbol = match it.target {
