@@ -29,7 +29,16 @@ const EDGES: &[(&str, &[&str])] = &[
     ("staunch-rust", &["staunch-ir", "staunch-runtime", "quote", "syn", "proc-macro2", "prettyplease"]),
     (
         "staunch-native",
-        &["staunch-ir", "staunch-runtime", "staunch-runtime-abi", "cranelift-*", "object", "gimli", "target-lexicon"],
+        &[
+            "staunch-ir",
+            "staunch-runtime",
+            "staunch-runtime-abi",
+            "cranelift-*",
+            "object",
+            "gimli",
+            "rustc-hash",
+            "target-lexicon",
+        ],
     ),
     // A second reading of the language sees the syntax tree, and nothing of the first.
     ("staunch-witness", &["staunch-frontend", "staunch-runtime"]),
