@@ -51,8 +51,7 @@ impl Function<'_, '_> {
 
     /// Calls a function, passes its fault on, and gives an elementary result.
     fn call_routine(&mut self, callee: RoutineId, values: &[clif::Value], at: Location) -> Option<clif::Value> {
-        let function = self.module.function(callee);
-        let function = self.function_ref(function);
+        let function = self.routine_ref(callee);
         let Effects { faults, turns: takes_turns, faults_at_call, .. } = *self.module.effects(callee);
         if takes_turns {
             self.spill_turns();

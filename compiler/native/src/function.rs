@@ -8,7 +8,7 @@ use crate::module::{ModuleEmitter, Workspace};
 use crate::scan::{Begun, start_of_scan};
 use crate::seen::Seen;
 use crate::signature::{POINTER, clif_type, result_type};
-use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
+use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
 use rustc_hash::FxHashMap;
@@ -69,6 +69,7 @@ pub(crate) struct Function<'a, 'p> {
     /// Where code is made for debugging.
     pub(crate) noted: Option<Noted>,
     functions: FxHashMap<FuncId, clif::FuncRef>,
+    routines: FxHashMap<RoutineId, clif::FuncRef>,
     data: FxHashMap<DataId, clif::GlobalValue>,
     result: Option<(LocalId, Type)>,
 }
@@ -170,10 +171,8 @@ pub(crate) struct Temporaries {
 
 pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id: RoutineId) -> Result<(), Error> {
     let routine = module.program.routine(id);
-    let function = module.function(id);
     let context = &mut workspace.context;
     context.func.signature = module.signature(id);
-    context.func.name = UserFuncName::user(0, function.as_u32());
     let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
     let mut effects = module.effects(id).clone();
     // A scan returns a code also where nothing can fault.
@@ -181,8 +180,7 @@ pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id
     let mut open = Function::open(module, builder, id, &effects);
     let flow = open.block(&routine.body);
     let marks = open.close(flow, &effects);
-    let name = module.program.title(routine);
-    module.define_routine(context, function, &name, marks)
+    module.define_routine(context, id, marks)
 }
 
 impl<'a, 'p> Function<'a, 'p> {
@@ -232,6 +230,7 @@ impl<'a, 'p> Function<'a, 'p> {
             temporaries: Temporaries::default(),
             noted,
             functions: FxHashMap::default(),
+            routines: FxHashMap::default(),
             data: FxHashMap::default(),
             result: routine.result.zip(result_type(routine)),
         };
@@ -377,6 +376,11 @@ impl<'a, 'p> Function<'a, 'p> {
         let new = self.module.output.declare_func_in_func(id, self.builder.func);
         self.functions.insert(id, new);
         new
+    }
+
+    pub(crate) fn routine_ref(&mut self, id: RoutineId) -> clif::FuncRef {
+        let (module, caller) = (&*self.module, &mut *self.builder.func);
+        *self.routines.entry(id).or_insert_with(|| module.routine_ref(id, caller))
     }
 
     /// A pointer to a constant of the module.

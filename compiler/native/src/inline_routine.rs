@@ -12,12 +12,13 @@
 //! and a linker drops it.
 
 use crate::count::{Mark, Marks};
+use crate::module::ROUTINES;
 use cranelift_codegen::inline::{Inline, InlineCommand};
 use cranelift_codegen::ir::{
     Block, ExternalName, FuncRef, Function, GlobalValueData, Inst, Opcode, UserExternalName, UserExternalNameRef, Value,
 };
-use cranelift_module::FuncId;
 use rustc_hash::FxHashMap;
+use staunch_ir::RoutineId;
 use std::borrow::Cow;
 
 /// A routine of more instructions is called.
@@ -32,7 +33,7 @@ const PART: usize = 2;
 
 /// The code of the small routines so far.
 #[derive(Default)]
-pub(crate) struct SmallRoutines(FxHashMap<FuncId, Small>);
+pub(crate) struct SmallRoutines(FxHashMap<RoutineId, Small>);
 
 struct Small {
     function: Function,
@@ -42,7 +43,7 @@ struct Small {
 
 impl SmallRoutines {
     /// Notes a routine's code before the code generator changes it, if it is small.
-    pub(crate) fn note(&mut self, id: FuncId, function: &Function, marks: &Marks) {
+    pub(crate) fn note(&mut self, id: RoutineId, function: &Function, marks: &Marks) {
         let is_small = function.dfg.num_insts() <= MOST && common(function) <= SMALL;
         if is_small && frame(function) <= MOST_OF_FRAMES && function.global_values.values().all(is_data) {
             let of_end = |it: &(Inst, Mark)| {
@@ -55,7 +56,7 @@ impl SmallRoutines {
     }
 
     /// The marks of the routines whose code is in a function now.
-    pub(crate) fn marks(&self, placed: &[(u32, FuncId)], function: &Function) -> Marks {
+    pub(crate) fn marks(&self, placed: &[(u32, RoutineId)], function: &Function) -> Marks {
         let mut marks = Marks::new();
         for (first, id) in placed {
             for (block, mark) in self.0.get(id).map_or(&[][..], |it| &it.marks) {
@@ -79,12 +80,12 @@ impl SmallRoutines {
 }
 
 pub(crate) struct Inliner<'a> {
-    small: &'a FxHashMap<FuncId, Small>,
+    small: &'a FxHashMap<RoutineId, Small>,
     /// By so many instructions the caller may still grow.
     left: usize,
     left_of_frames: u32,
     /// The routines whose code is in place of a call, each with the number of the block that its first one is now.
-    pub(crate) placed: Vec<(u32, FuncId)>,
+    pub(crate) placed: Vec<(u32, RoutineId)>,
 }
 
 impl Inline for Inliner<'_> {
@@ -152,9 +153,13 @@ fn renamed<'a>(function: &'a Function, caller: &Function) -> Cow<'a, Function> {
     Cow::Owned(renamed)
 }
 
-fn called(caller: &Function, callee: FuncRef) -> Option<FuncId> {
+/// The routine that a function calls.
+fn called(caller: &Function, callee: FuncRef) -> Option<RoutineId> {
     match caller.dfg.ext_funcs[callee].name {
-        ExternalName::User(name) => Some(FuncId::from_u32(caller.params.user_named_funcs()[name].index)),
+        ExternalName::User(name) => match caller.params.user_named_funcs()[name] {
+            UserExternalName { namespace: ROUTINES, index } => Some(RoutineId(index)),
+            UserExternalName { .. } => None,
+        },
         ExternalName::TestCase(_) | ExternalName::LibCall(_) | ExternalName::KnownSymbol(_) => None,
     }
 }

@@ -32,6 +32,7 @@ mod scan;
 mod at_once;
 mod expectation;
 mod expected;
+mod folded;
 mod follow;
 mod function;
 mod grouped;

@@ -76,6 +76,11 @@ impl Made {
         }
     }
 
+    /// Of a routine that has another's function.
+    pub(crate) fn none(id: FuncId, name: &str) -> Self {
+        Self { id, name: name.to_owned(), text: 0, frame: 0, targets: Vec::new(), counted: Err(Gap::All) }
+    }
+
     /// The same, with the blocks of the code, which is of x86-64. Without marks of all loops, they are not known.
     pub(crate) fn counted(self, code: Option<Code<'_>>, function: &Function, marks: Option<&Numbered>) -> Self {
         let counted = match (code, marks) {
@@ -165,7 +170,8 @@ pub(crate) fn measures(
     [init, scan]: [FuncId; 2],
 ) -> Measures {
     let names = Names {
-        functions: made.iter().enumerate().map(|(at, it)| (it.id, at)).collect(),
+        // Of equal ones the first has the function.
+        functions: made.iter().enumerate().rev().map(|(at, it)| (it.id, at)).collect(),
         outside,
         constants: sizes.iter().enumerate().map(|(at, it)| (it.0, at)).collect(),
     };

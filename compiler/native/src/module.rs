@@ -5,6 +5,7 @@ use crate::count::{Marks, Numbered, is_marked, sizes};
 use crate::debug::notes::Notes;
 use crate::error::reason;
 use crate::expectation::{Expectation, expectations};
+use crate::folded::{Folded, Shared};
 use crate::inline_routine::SmallRoutines;
 use crate::measure::{Code, Made, Measures, measures};
 use crate::target::Aim;
@@ -12,7 +13,10 @@ use crate::tidy::tidy;
 use crate::trimmed::Trimmed;
 use crate::unused::drop_unused_loads;
 use crate::{Error, signature};
-use cranelift_codegen::ir::{AbiParam, Function, InstBuilder, MemFlagsData, Signature, Value, types};
+use cranelift_codegen::ir::{
+    AbiParam, ExtFuncData, ExternalName, FuncRef, Function, InstBuilder, MemFlagsData, Signature, UserExternalName,
+    UserFuncName, Value, types,
+};
 use cranelift_codegen::isa::CallConv;
 use cranelift_codegen::{CompiledCode, Context};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
@@ -26,6 +30,9 @@ use staunch_runtime::reference::encode;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use target_lexicon::Architecture;
+
+/// In names of the code generator's: what follows is the number of a routine. A module's own functions are 0, its data 1.
+pub(crate) const ROUTINES: u32 = 2;
 
 /// The table of objects, and what code is made by that is known of them.
 struct References {
@@ -53,7 +60,9 @@ pub(crate) struct ModuleEmitter<'p> {
     scanned: Option<RoutineId>,
     pub(crate) output: &'p mut dyn Module,
     pub(crate) aim: Aim,
-    functions: Vec<FuncId>,
+    /// Of the routines, where they are declared.
+    functions: Vec<Option<FuncId>>,
+    folded: Folded,
     imports: FxHashMap<String, FuncId>,
     /// Read-only data, defined when all code is made.
     constants: FxHashMap<Vec<u8>, DataId>,
@@ -73,8 +82,10 @@ pub(crate) struct ModuleEmitter<'p> {
     sizes: Vec<(DataId, u64)>,
     /// The functions that wait for their code.
     waiting: Queue,
-    /// The functions, in the order in which they are made.
+    /// The functions, in the order in which they are made: those of routines first.
     made: Vec<Made>,
+    /// The routines without functions of their own.
+    equal: Vec<(RoutineId, Made)>,
     /// The functions as text, where it is wanted.
     pub(crate) listing: Option<String>,
     /// Whether the instructions of functions are to be counted.
@@ -104,7 +115,8 @@ impl<'p> ModuleEmitter<'p> {
             handles_faults: program.handles_faults(),
             scanned,
             effects,
-            functions: Vec::with_capacity(program.routines.len()),
+            functions: vec![None; program.routines.len()],
+            folded: Folded::of(program, Aim::of(output.isa())),
             imports: FxHashMap::default(),
             constants: FxHashMap::default(),
             references: None,
@@ -116,26 +128,12 @@ impl<'p> ModuleEmitter<'p> {
             sizes: Vec::new(),
             waiting: Queue::default(),
             made: Vec::with_capacity(program.routines.len()),
+            equal: Vec::new(),
             listing: None,
             counts: false,
             notes: None,
             output,
         }
-    }
-
-    pub(crate) fn declare(&mut self) -> Result<(), Error> {
-        let program = self.program;
-        for (at, routine) in program.routines.iter().enumerate() {
-            let id = RoutineId::next(at);
-            let signature = self.signature(id);
-            let (name, linkage) = match self.is_scanned(id) {
-                true => (self.symbol(signature::SCAN), Linkage::Export),
-                false => (symbol(id, routine), Linkage::Local),
-            };
-            let function = self.output.declare_function(&name, linkage, &signature)?;
-            self.functions.push(function);
-        }
-        Ok(())
     }
 
     pub(crate) fn signature(&self, id: RoutineId) -> Signature {
@@ -160,15 +158,72 @@ impl<'p> ModuleEmitter<'p> {
 
     /// The function `staunch_scan`, if it is a routine's.
     pub(crate) fn scan(&self) -> Option<FuncId> {
-        self.scanned.map(|id| self.function(id))
+        self.functions[self.scanned?.index()]
     }
 
     pub(crate) fn effects(&self, id: RoutineId) -> &Effects {
         &self.effects[id.index()]
     }
 
-    pub(crate) fn function(&self, id: RoutineId) -> FuncId {
-        self.functions[id.index()]
+    /// What a routine is called by in a function's code: its number, for which [`Self::name`] puts the one of its function.
+    pub(crate) fn routine_ref(&self, id: RoutineId, caller: &mut Function) -> FuncRef {
+        let signature = caller.import_signature(self.signature(id));
+        let name = caller.declare_imported_user_function(UserExternalName { namespace: ROUTINES, index: id.0 });
+        let name = ExternalName::user(name);
+        caller.import_function(ExtFuncData { name, signature, colocated: true, patchable: false })
+    }
+
+    /// The name of the function of what a function's code calls.
+    fn named(&mut self, name: &UserExternalName) -> Result<UserExternalName, Error> {
+        Ok(match name.namespace {
+            ROUTINES => UserExternalName { namespace: 0, index: self.function(RoutineId(name.index))?.as_u32() },
+            _ => name.clone(),
+        })
+    }
+
+    /// The names that a function's code calls by.
+    fn names(&mut self, function: &Function) -> Result<Vec<UserExternalName>, Error> {
+        function.params.user_named_funcs().values().map(|it| self.named(it)).collect()
+    }
+
+    /// Calls of routines in a function's code become those of their functions.
+    fn name(&mut self, function: &mut Function) -> Result<(), Error> {
+        for (at, name) in function.params.user_named_funcs().clone() {
+            function.params.reset_user_func_name(at, self.named(&name)?);
+        }
+        Ok(())
+    }
+
+    /// The function of a routine, which is its own if it has not been made yet.
+    fn function(&mut self, id: RoutineId) -> Result<FuncId, Error> {
+        if let Some(known) = self.functions[id.index()] {
+            return Ok(known);
+        }
+        let new = self.declare(id)?;
+        self.functions[id.index()] = Some(new);
+        Ok(new)
+    }
+
+    fn declare(&mut self, id: RoutineId) -> Result<FuncId, Error> {
+        let (name, linkage) = match self.is_scanned(id) {
+            true => (self.symbol(signature::SCAN), Linkage::Export),
+            false => (symbol(id, self.program.routine(id)), Linkage::Local),
+        };
+        let signature = self.signature(id);
+        Ok(self.output.declare_function(&name, linkage, &signature)?)
+    }
+
+    /// The function of a routine with this code.
+    fn shared(&mut self, id: RoutineId, code: &Function, marks: &Marks) -> Result<Shared, Error> {
+        if self.functions[id.index()].is_some() || !self.folded.is_candidate(id) {
+            return self.function(id).map(Shared::New);
+        }
+        let names = self.names(code)?;
+        let at = self.program.routine(id).location;
+        let mut folded = core::mem::take(&mut self.folded);
+        let function = folded.function(at, (code, names, marks), || self.function(id));
+        self.folded = folded;
+        function
     }
 
     /// A function of the runtime.
@@ -213,7 +268,10 @@ impl<'p> ModuleEmitter<'p> {
     }
 
     /// What is known of the code, when all of it is made.
-    pub(crate) fn measures(&self, entry_points: [FuncId; 2]) -> Measures {
+    pub(crate) fn measures(&mut self, entry_points: [FuncId; 2]) -> Measures {
+        for (routine, made) in core::mem::take(&mut self.equal) {
+            self.made.insert(routine.index(), made);
+        }
         let outside = self.imports.iter().map(|(symbol, id)| (*id, symbol.clone())).collect();
         measures(&self.made, outside, &self.sizes, entry_points)
     }
@@ -287,14 +345,15 @@ impl<'p> ModuleEmitter<'p> {
         builder.ins().store(MemFlagsData::trusted(), state, word, 0);
     }
 
-    /// Makes the code of the routine in `context`, with that of small ones in place of their calls.
+    /// Makes the code of the routine in `context`, with that of small ones in place of their calls, unless another one's is equal.
+    /// Routines come in their order.
     pub(crate) fn define_routine(
         &mut self,
         context: &mut Context,
-        id: FuncId,
-        name: &str,
+        routine: RoutineId,
         mut marks: Marks,
     ) -> Result<(), Error> {
+        let name = &self.program.title(self.program.routine(routine));
         self.list(context, name);
         let mut inliner = self.small.inliner(&mut context.func);
         let inlined = context.inline(&mut inliner);
@@ -305,8 +364,18 @@ impl<'p> ModuleEmitter<'p> {
             tidy(&mut context.func);
         }
         if self.aim == Aim::Speed {
-            self.small.note(id, &context.func, &marks);
+            self.small.note(routine, &context.func, &marks);
         }
+        let id = match self.shared(routine, &context.func, &marks)? {
+            Shared::New(id) => id,
+            Shared::Known(id) => {
+                self.functions[routine.index()] = Some(id);
+                self.equal.push((routine, Made::none(id, name)));
+                self.output.clear_context(context);
+                return Ok(());
+            }
+        };
+        context.func.name = UserFuncName::user(0, id.as_u32());
         self.define(context, id, name, marks)
     }
 
@@ -324,6 +393,7 @@ impl<'p> ModuleEmitter<'p> {
     }
 
     fn define(&mut self, context: &mut Context, id: FuncId, name: &str, mut marks: Marks) -> Result<(), Error> {
+        self.name(&mut context.func)?;
         drop_unused_loads(&mut context.func);
         let is_marked = self.counts && is_marked(&context.func, &marks);
         if is_marked {

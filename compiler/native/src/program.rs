@@ -80,7 +80,6 @@ pub(crate) fn emit_named(
     if aim == Aim::Debugging {
         module.declare_notes()?;
     }
-    module.declare()?;
     for at in 0..program.routines.len() {
         function::emit(&mut module, &mut workspace, RoutineId::next(at))?;
     }

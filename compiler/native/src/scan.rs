@@ -99,7 +99,7 @@ impl Scan<'_, '_, '_> {
     /// Calls a routine of a PROGRAM; gives the code that it returned, or 0.
     fn call(&mut self, routine: RoutineId, instance: Address) -> clif::Value {
         let effects = self.module.effects(routine).clone();
-        let function = self.module.output.declare_func_in_func(self.module.function(routine), self.builder.func);
+        let function = self.module.routine_ref(routine, self.builder.func);
         let mut values = Vec::new();
         if effects.context {
             values.push(self.context);

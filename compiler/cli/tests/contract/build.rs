@@ -42,6 +42,34 @@ fn code_for_size_is_smaller_and_does_the_same() {
     has(&folder.staunch("build mixed.st --emit rust --opt size").err(2), &["`--opt` is for compiled code"]);
 }
 
+/// Heirs of one base have its METHODs in one function each.
+#[test]
+fn code_of_inherited_methods_is_there_once() {
+    let method = |at: usize| {
+        format!(
+            "METHOD PUBLIC M{at} : DINT\nVAR_INPUT x : DINT; END_VAR\nVAR i : DINT; END_VAR\nFOR i := 0 TO 9 DO a[i] := a[i] + x * {at}; \
+             IF a[i] > 1000 THEN a[i] := a[i] / (x + {at}); n := n + 1; END_IF; END_FOR; M{at} := n;\nEND_METHOD\n"
+        )
+    };
+    let methods: String = (0..50).map(method).collect();
+    let heir = |at: usize| {
+        format!("FUNCTION_BLOCK H{at} EXTENDS Base\nVAR own : DINT; END_VAR\nown := own + {at};\nEND_FUNCTION_BLOCK\n")
+    };
+    let heirs: String = (0..100).map(heir).collect();
+    let instances: String = (0..100).map(|at| format!("h{at} : H{at};\n")).collect();
+    let calls: String = (0..100).map(|at| format!("h{at}(); r := r + h{at}.M{}(x := {at});\n", at % 50)).collect();
+    let source = format!(
+        "FUNCTION_BLOCK Base\nVAR n : DINT; a : ARRAY[0..9] OF DINT; END_VAR\n{methods}END_FUNCTION_BLOCK\n{heirs}\
+         PROGRAM Main\nVAR {instances} r : DINT; END_VAR\n{calls}END_PROGRAM\n"
+    );
+    let folder = Folder::with("heirs", &[("main.st", &source)]);
+    folder.staunch("build main.st --emit obj -o made.o -q").out(0);
+    let size = folder.0.join("made.o").metadata().unwrap().len();
+    assert!(size < 80_000, "{size} bytes");
+    let run = |backend| folder.staunch(&format!("run main.st --scans 5 --vars r --trace - --backend {backend}")).out(0);
+    assert_eq!(run("native"), run("interpret"));
+}
+
 #[test]
 fn output_is_the_same_byte_for_byte() {
     let folder = Folder::with("same", &[("main.st", COUNTER)]);
