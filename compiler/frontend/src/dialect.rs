@@ -502,6 +502,16 @@ impl Dialect {
         matches!(self, Self::Iec | Self::Openplc | Self::Openplc4)
     }
 
+    /// Lists of global variables have names, which are written before their variables: `GVL.x`.
+    pub const fn names_lists(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
+    /// `AT %I*` needs no VAR_CONFIG: the configuration of the devices gives the address.
+    pub const fn leaves_addresses_open(self) -> bool {
+        matches!(self, Self::Codesys)
+    }
+
     /// Assigning a FOR counter in its loop is a lint, not an error.
     pub const fn assigns_counters(self) -> bool {
         matches!(self, Self::Codesys | Self::Openplc4)

@@ -38,8 +38,7 @@ fn late(written: Name<'_>, problem: Diagnostic, log: &mut Log<'_>) {
 
 /// A program that moves to another system keeps the form.
 fn has_late_addresses(span: Span, log: &Log<'_>) -> bool {
-    log.dialect(span).has_addresses_after_types()
-        || log.options.moved_from.is_some_and(Dialect::has_addresses_after_types)
+    log.has_form(span, Dialect::has_addresses_after_types)
 }
 
 fn resolve_one<'s>(decl: &mut VarDecl<'s>, log: &mut Log<'s>) {

@@ -111,6 +111,19 @@ impl<'s> Log<'s> {
         self.dialects.get(usize::from(span.file)).copied().unwrap_or(self.options.dialect)
     }
 
+    /// Whether the dialect of a place has a form, or the one from which the program moves: it keeps the form.
+    pub fn has_form(&self, span: Span, has: fn(Dialect) -> bool) -> bool {
+        has(self.dialect(span)) || self.options.moved_from.is_some_and(has)
+    }
+
+    /// How a program comes by what another dialect has, the owner.
+    pub fn how_to_have(&self, owner: Dialect) -> String {
+        match self.options.moved_from {
+            None => owner.how_to_choose(),
+            Some(_) => "leave it out for this comparison, or declare one with this name in the program: both systems then have it".to_owned(),
+        }
+    }
+
     /// Where `span` starts, for people.
     pub fn location(&mut self, span: Span) -> Location {
         let source = self.sources.get(span.file);

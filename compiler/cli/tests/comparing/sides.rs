@@ -232,3 +232,32 @@ fn variables_of_one_name_and_wide_texts_are_told_apart() {
     let out = difference(&format!("{} --from iec --to openplc --vars o -A warnings", path.display()));
     assert!(out.contains("abXY") && out.contains("abcd"), "{out}");
 }
+
+/// Lists of globals with names, and addresses that the devices' configuration gives, are forms of the old system: they move.
+#[test]
+fn lists_and_open_addresses_of_codesys_move() {
+    let folder = Folder("lists").path();
+    let program = |address: &str| {
+        format!(
+            "{{gvl 'Plant'}}\nVAR_GLOBAL\n    start AT %{address} : BOOL;\n    total : INT;\n    parts : CTU;\nEND_VAR\n\
+             PROGRAM Main\nVAR\n    own : INT;\nEND_VAR\n\
+             Plant.parts(CU := Plant.start, PV := 3);\nIF Plant.parts.Q THEN\n    Plant.total := Plant.total + 1;\nEND_IF\n\
+             own := Plant.total;\nEND_PROGRAM\n"
+        )
+    };
+    std::fs::write(folder.join("open.st"), program("I*")).expect("a program");
+    std::fs::write(folder.join("bound.st"), program("IX0.0")).expect("a program");
+    let compared = |arguments: &str| {
+        command().args(arguments.split_whitespace()).current_dir(&folder).output().expect("the command starts")
+    };
+    for to in ["iec", "siemens", "cscape", "openplc"] {
+        let output = compared(&format!("open.st --from codesys --to {to} --budget 2000"));
+        let lints = text(&output.stderr);
+        assert!(matches!(output.status.code(), Some(1 | 4)), "{to}: {lints}");
+        assert!(lints.contains("W0617") && lints.contains("W0618"), "{to}: {lints}");
+    }
+    let output = compared("bound.st --from codesys --to iec --budget 2000 --write moved.st");
+    assert!(matches!(output.status.code(), Some(1 | 4)), "{}", text(&output.stderr));
+    let moved = std::fs::read_to_string(folder.join("moved.st")).expect("it is written");
+    assert!(moved.contains("\nparts(CU := start, PV := 3);") && !moved.contains("Plant"), "{moved}");
+}

@@ -161,6 +161,7 @@ impl<'s> Checker<'_, 's> {
 
     fn label_range(&mut self, label: &ast::Label<'s>, ty: Type, span: Span) -> Option<(i128, i128)> {
         let low = self.label_value(&label.low, ty)?;
+        self.warn_of_difference(&label.low);
         let high = label.high.as_ref().map_or(Some(low), |high| self.label_value(high, ty))?;
         if low > high {
             self.report(
@@ -172,6 +173,22 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         Some((low, high))
+    }
+
+    /// Reports `1-5`, which is -4.
+    fn warn_of_difference(&mut self, label: &ast::Expr<'s>) {
+        let ast::ExprKind::Binary(sides, ast::BinaryOp::Sub, _) = &label.kind else { return };
+        let [from, to] = &**sides;
+        let is_number = |it: &ast::Expr<'s>| matches!(it.kind, ast::ExprKind::Literal(_));
+        if is_number(from) && is_number(to) {
+            let sources = &self.decl.log.sources;
+            let (from, to) = (sources.text(from.span), sources.text(to.span));
+            let lint = Diagnostic::new(Code::W0533, label.span, "this label is the difference of two numbers")
+                .label("one value, not a range")
+                .help(format!("write `{from}..{to}` for all values from {from} to {to}"))
+                .fix(label.span, format!("{from}..{to}"));
+            self.report(lint);
+        }
     }
 
     /// A label is not converted by a call, as other values are.

@@ -4,7 +4,7 @@ use super::specs::Within;
 use crate::names::SpaceId;
 use crate::types::declarations::{Declarations, GlobalSlot};
 use crate::types::scope::{Scope, Variable};
-use crate::types::table::GLOBALS;
+use crate::types::table::{GLOBALS, Resolved};
 use staunch_ir::{Field, Location, Place, Root, Struct, StructId, Type};
 use std::rc::Rc;
 
@@ -56,10 +56,12 @@ impl<'s> Declarations<'s> {
     }
 
     fn global_field(&mut self, at: usize) -> Option<Field> {
-        let variable = self.global(at)?;
         self.addresses.field_of_global(at)?;
+        // One that was refused keeps its place: the numbers of the others are by it.
+        let refused = || Rc::new(Resolved::plain(Type::BOOL));
+        let resolved = self.global(at).map_or_else(refused, |it| Rc::clone(&it.resolved));
         let GlobalSlot { name, block, decl, .. } = self.globals[at];
-        let field = self.field(name, &variable.resolved, block, decl);
+        let field = self.field(name, &resolved, block, decl);
         Some(Field { name: self.global_field_name(at), ..field })
     }
 

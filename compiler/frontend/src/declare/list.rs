@@ -4,7 +4,7 @@
 use crate::dialect::Dialect;
 use crate::spelling::Key;
 use crate::types::declarations::Declarations;
-use crate::{Code, Diagnostic, Span, added, ast, start};
+use crate::{Code, Diagnostic, Fix, Span, added, ast, start};
 
 /// The names of a file's lists.
 pub(super) struct Lists<'s> {
@@ -25,7 +25,7 @@ impl<'s> Lists<'s> {
         let attributes = file.pragmas.iter().filter(|it| is_qualified_only(it.text));
         lists.qualified.extend(attributes.map(|it| it.span.start));
         for pragma in file.pragmas.iter().filter(|it| is_list_pragma(it.text)) {
-            if declarations.dialect(pragma.span) != Dialect::Codesys {
+            if !declarations.log.has_form(pragma.span, Dialect::names_lists) {
                 declarations.names.nameless_lists.extend(quoted(pragma.text).map(Key));
                 declarations.report(
                     Diagnostic::new(Code::W0102, pragma.span, "a list of global variables has a name only in codesys")
@@ -33,6 +33,8 @@ impl<'s> Lists<'s> {
                         .help("start the file with `{dialect 'codesys'}`"),
                 );
             } else if let Some(name) = quoted(pragma.text) {
+                declarations.loses_name(name, pragma.span);
+                declarations.leaves_out_pragma(pragma.span);
                 let before = file.items.partition_point(|it| place(it).start < pragma.span.start);
                 lists.heads.push(before.checked_sub(1).map_or(0, |at| place(&file.items[at]).end));
                 lists.named.push((pragma.span.start, name));
@@ -54,9 +56,9 @@ impl<'s> Lists<'s> {
         {
             let path = declarations.log.sources.get(first.file).path.as_str();
             let name = stem(path).filter(|it| is_name(it));
-            match declarations.dialect(*first) {
-                Dialect::Codesys => lists.file = name,
-                _ => declarations.names.nameless_lists.extend(name.map(Key)),
+            match declarations.log.has_form(*first, Dialect::names_lists) {
+                true => lists.file = name,
+                false => declarations.names.nameless_lists.extend(name.map(Key)),
             }
         }
         lists
@@ -79,6 +81,30 @@ impl<'s> Lists<'s> {
     pub fn around(&self, block: Span) -> Option<&'s str> {
         let before = self.named.iter().rev().find(|(start, _)| *start < block.start);
         before.filter(|(start, _)| *start >= self.end).map(|(_, name)| *name).or(self.file)
+    }
+}
+
+impl Declarations<'_> {
+    /// Says that the system to which the program moves has no names of lists.
+    fn loses_name(&mut self, name: &str, span: Span) {
+        let dialect = self.dialect(span);
+        if !dialect.names_lists() {
+            let system = dialect.name().to_ascii_uppercase();
+            let message = format!("the list `{name}` has no name in {system}");
+            self.report(
+                Diagnostic::new(Code::W0618, span, message)
+                    .label("the move removes the name")
+                    .help(format!("write its variables without `{name}.`; each needs a name that nothing else has")),
+            );
+        }
+    }
+
+    /// The pragma of a list, with its braces, is not in the program that moves.
+    fn leaves_out_pragma(&mut self, pragma: Span) {
+        if !self.dialect(pragma).names_lists() {
+            let span = Span { start: pragma.start - 1, end: pragma.end + 1, ..pragma };
+            self.log.readdressed.push(Fix { span, replacement: String::new() });
+        }
     }
 }
 

@@ -194,11 +194,28 @@ impl Log<'_> {
             && !crate::allow::is_allowance(pragma.text)
             && !crate::testing::fixture::is_pragma(pragma.text)
         {
-            self.report(
-                Diagnostic::new(Code::W0102, pragma.span, format!("the pragma `{word}` is not known"))
-                    .label("it has no effect"),
-            );
+            let error = Diagnostic::new(Code::W0102, pragma.span, format!("the pragma `{word}` is not known"))
+                .label("it has no effect");
+            self.report(match known_form(pragma.text, &word) {
+                Some(form) => error.help(format!("write `{{{form}}}`")),
+                None => error,
+            });
         }
+    }
+}
+
+/// What a pragma that is not known is nearly.
+fn known_form(text: &str, word: &str) -> Option<String> {
+    const KNOWN: [&str; 6] = ["attribute", "dialect", "external", "gvl", "pool", "allow"];
+    let meant = nearest(word, KNOWN.into_iter())?;
+    let rest = text.trim().get(word.len()..)?.trim().trim_matches(['\'', '"', '=', ':', ' ']);
+    match meant {
+        "dialect" => {
+            let dialect = Dialect::names().map(|it| it.0).find(|it| it.eq_ignore_ascii_case(rest));
+            Some(format!("dialect '{}'", dialect.unwrap_or("codesys")))
+        }
+        "attribute" | "gvl" if !rest.is_empty() => Some(format!("{meant} '{rest}'")),
+        _ => Some(format!("{meant} {rest}").trim().to_owned()),
     }
 }
 

@@ -84,7 +84,8 @@ impl<'s> Declarations<'s> {
     /// Where a member says that it lies. `AT %I*` says that the system's tree of devices may connect it: it is a member like
     /// any other.
     pub(super) fn location_of(&self, member: &ast::VarDecl<'s>) -> Option<ast::Name<'s>> {
-        let is_open = |it: &ast::Name<'s>| it.text.ends_with('*') && self.dialect(it.span) == Dialect::Codesys;
+        let is_open =
+            |it: &ast::Name<'s>| it.text.ends_with('*') && self.log.has_form(it.span, Dialect::leaves_addresses_open);
         member.address.filter(|it| !is_open(it))
     }
 

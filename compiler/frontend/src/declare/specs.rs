@@ -483,7 +483,7 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is in {system}'s library", name.text))
                     .about(Subject::Elsewhere { name: name.text.to_owned() })
                     .label("this file's dialect does not have this type")
-                    .help(dialect.how_to_choose()),
+                    .help(self.log.how_to_have(dialect)),
             );
             return;
         }
@@ -496,7 +496,7 @@ impl<'s> Declarations<'s> {
         let blocks = staunch_runtime::BLOCKS.iter().map(|it| it.name);
         let blocks = blocks.filter(|it| dialect::bare_block(dialect, it).is_some());
         let elementary = Elementary::ALL.iter().map(|it| it.name());
-        let candidates = self.names.type_names().chain(elementary).chain(blocks).chain(["STRING", "WSTRING"]);
+        let candidates = self.names.type_names().chain(blocks).chain(elementary).chain(["STRING", "WSTRING"]);
         let near = nearest(name.text, candidates).map(str::to_owned);
         let foreign =
             FOREIGN.iter().find(|(it, _)| it.eq_ignore_ascii_case(name.text)).map(|(_, ours)| (*ours).to_owned());
@@ -651,12 +651,13 @@ impl<'s> Declarations<'s> {
 
     fn dimension(&mut self, low: i128, high: i128, element: Resolved, span: Span) -> Option<Resolved> {
         if low > high {
-            self.report(
-                Diagnostic::new(Code::E0406, span, "the bounds of an array are in the wrong order")
-                    .label(format!("{low} is above {high}"))
-                    .help(format!("write `{high}..{low}`"))
-                    .fix(span, format!("{high}..{low}")),
-            );
+            let error = Diagnostic::new(Code::E0406, span, "the bounds of an array are in the wrong order")
+                .label(format!("{low} is above {high}"));
+            let is_of_names = self.log.sources.text(span).contains(|it: char| it.is_alphabetic());
+            self.report(match is_of_names {
+                true => error.help("the lower bound comes first: check the values of the constants"),
+                false => error.help(format!("write `{high}..{low}`")).fix(span, format!("{high}..{low}")),
+            });
             return None;
         }
         let (Ok(low), Ok(high)) = (i64::try_from(low), i64::try_from(high)) else {

@@ -69,6 +69,7 @@ impl<'s> Checker<'_, 's> {
         };
         let mut complete = true;
         let mut compared = false;
+        let mut has_value_for_output = false;
         self.offer_parameters(parameters, arguments);
         for (number, argument) in arguments.iter().enumerate() {
             if let ArgumentKind::Positional(value) = &argument.kind
@@ -84,7 +85,12 @@ impl<'s> Checker<'_, 's> {
                 ArgumentKind::Positional(value) => {
                     let free = order.iter().copied().find(|at| matches!(given[*at], Given::Nothing));
                     match free {
+                        // The values after it are as many too many.
                         Some(at) if parameters[at].section == Section::Output && is_value(value) => {
+                            complete = false;
+                            if std::mem::replace(&mut has_value_for_output, true) {
+                                continue;
+                            }
                             Err(Box::new(value_for_output(owner, number + 1, parameters[at].name, value.span)))
                         }
                         Some(at) if parameters[at].section == Section::Output => {

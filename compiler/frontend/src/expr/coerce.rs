@@ -3,10 +3,12 @@
 use super::checker::{Checker, Context};
 use super::operand::Operand;
 use crate::diagnostic::Subject;
+use crate::spelling::Key;
 use crate::types::coercion::{as_number, widens};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::narrow::stored;
 use staunch_ir::{BoundsId, Chars, Conversion, Elementary, EnumId, Expr, ExprKind, Op, StringType, Type, Value};
+use staunch_runtime::Family;
 
 impl<'s> Checker<'_, 's> {
     /// The value of `expr`, to be stored where `ty` is declared.
@@ -249,8 +251,15 @@ impl<'s> Checker<'_, 's> {
     /// The first members of an enumeration, for a message.
     pub(crate) fn members(&self, ty: Type) -> Option<String> {
         let Type::Enum(id) = ty else { return None };
-        let names = self.decl.program.enumeration(id).values.iter().map(|it| it.name.as_str());
-        Some(crate::diagnostic::wording::list(&names.take(4).collect::<Vec<_>>()))
+        let enumeration = self.decl.program.enumeration(id);
+        let is_qualified = |name: &str| self.decl.names.qualified_enumerators.contains_key(&Key(name));
+        let name = |name: &str| match is_qualified(name) {
+            true => format!("{}.{name}", enumeration.name),
+            false => name.to_owned(),
+        };
+        let names: Vec<_> = enumeration.values.iter().take(4).map(|it| name(&it.name)).collect();
+        let list = crate::diagnostic::wording::list(&names.iter().map(String::as_str).collect::<Vec<_>>());
+        Some(if enumeration.values.len() > names.len() { format!("{list}, …") } else { list })
     }
 
     pub(crate) fn instance_is_no_value(&mut self, expr: &Expr, message: String, span: Span) -> Option<Expr> {
@@ -384,7 +393,12 @@ impl<'s> Checker<'_, 's> {
         let mut error = Diagnostic::new(Code::E0203, span, format!("expected {}, found {}", to.name(), from.name()))
             .about(Subject::Mismatch(to, from))
             .label(format!("{} is not converted to {} implicitly", from.name(), to.name()));
+        // Timers of Logix count milliseconds in DINTs, and its conversions of a TIME microseconds.
+        let is_milliseconds = self.decl.dialect(span).family() == Family::Logix && from.is_duration();
         error = match self.short_text(span) {
+            _ if is_milliseconds => {
+                error.help("PRE and ACC of a timer count milliseconds: write their number, 500 for `T#500ms`")
+            }
             Some(text) => error.help(format!("write `{function}({text})`")).fix(span, format!("{function}({text})")),
             None => error.help(format!("convert it with `{function}(…)`")),
         };

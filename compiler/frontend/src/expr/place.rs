@@ -157,7 +157,11 @@ impl<'s> Checker<'_, 's> {
             [one] => self.decl.log.sources.text(one.span),
             [] => "1",
         };
-        let meant = format!("{text}[{index}]");
+        let has_pins = arguments.iter().any(|it| !matches!(it.kind, ast::ArgumentKind::Positional(_)));
+        let meant = match has_pins {
+            true => format!("{text}[1]({index})"),
+            false => format!("{text}[{index}]"),
+        };
         self.report(
             Diagnostic::new(Code::E0305, callee.span, format!("the array `{text}` cannot be called"))
                 .label("an element is chosen in brackets")
@@ -613,7 +617,13 @@ impl<'s> Checker<'_, 's> {
                         error.help(format!("{reads}, change it with `{text} := REPLACE({text}, 'x', 1, {at})`"))
                     }
                     Type::Elementary(it) if it.is_bits() && it != Elementary::Bool => {
-                        error.help(format!("a bit is written `{text}.{at}`"))
+                        error.help(match at.bytes().all(|it| it.is_ascii_digit()) {
+                            true => format!("a bit is written `{text}.{at}`"),
+                            false => format!(
+                                "the number of a bit is constant, `{text}.0`; with a variable write `(SHR({text}, {at}) AND {0}#1) = {0}#1`",
+                                it.name()
+                            ),
+                        })
                     }
                     Type::Elementary(_)
                     | Type::Reference(_)

@@ -8,7 +8,7 @@ use crate::names::{Entry, Found, Meaning, Sense, SpaceId, functions};
 use crate::prelude;
 use crate::spelling::nearest;
 use crate::types::scope::Variable;
-use crate::{Code, Diagnostic, Span, ast};
+use crate::{Code, Diagnostic, Fix, Span, ast};
 use staunch_ir::Type;
 use std::rc::Rc;
 
@@ -40,7 +40,10 @@ impl<'s> Checker<'_, 's> {
         let found = self.decl.lookup(&path, Sense::Value);
         self.decl.note_path(&path, &found);
         match found {
-            Found::One(Meaning::Declared(Entry::Global(at))) => Some(self.global(at)),
+            Found::One(Meaning::Declared(Entry::Global(at))) => {
+                self.without_list(&path, &found);
+                Some(self.global(at))
+            }
             Found::One(Meaning::Declared(Entry::Pou(slot))) if self.is_callable_program(slot, *last) => {
                 Some(self.decl.program_variable(slot))
             }
@@ -65,6 +68,21 @@ impl<'s> Checker<'_, 's> {
                 Some(None)
             }
             Found::One(_) => None,
+        }
+    }
+
+    /// In a program that moves to a system whose lists have no names: the variable is written without that of its list, where
+    /// nothing else has its name.
+    fn without_list(&mut self, path: &[ast::Name<'s>], found: &Found) {
+        let &[list, name] = path else { return };
+        let log = &self.decl.log;
+        if log.options.moved_from.is_none() || log.dialect(list.span).names_lists() {
+            return;
+        }
+        let bare = self.decl.lookup(&[name], Sense::Value);
+        if self.scope.get(name.text).is_none() && (bare == Found::Nothing || bare == *found) {
+            let span = Span { end: name.span.start, ..list.span };
+            self.decl.log.readdressed.push(Fix { span, replacement: String::new() });
         }
     }
 

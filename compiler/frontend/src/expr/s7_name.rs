@@ -1,7 +1,9 @@
 //! Names of S7 that are not declared: tags and blocks in quotes, and addresses without their `%`.
 
 use super::checker::Checker;
+use crate::diagnostic::Missing;
 use crate::dialect::Dialect;
+use crate::spelling::Key;
 use crate::{Diagnostic, ast};
 
 impl<'s> Checker<'_, 's> {
@@ -19,12 +21,16 @@ impl<'s> Checker<'_, 's> {
             return Some(error.help("write the member at this address by its name: `\"Data\".member`"));
         }
         let text = quoted?;
-        let error = error.clone().label("a name in quotes is a PLC tag, a data block or a block of the project");
+        // A name that a local variable has too is one of a list.
+        let error = match Key(text) == Key(name.text) {
+            true => error.clone(),
+            false => Diagnostic::missing(Missing::Variable, text, name.span),
+        };
+        let error = error.label("a name in quotes is a PLC tag, a data block or a block of the project");
         Some(match after.trim_start().starts_with(['.', '(']) {
             true => error.help(format!("add the source of the block: `DATA_BLOCK \"{text}\" … END_DATA_BLOCK`")),
             false => error.help(format!(
-                "for a PLC tag, add a file `tags.st` that declares it: `VAR_GLOBAL {} AT %I0.0 : BOOL; END_VAR`",
-                name.text
+                "for a PLC tag, add a file `tags.st` that declares it: `VAR_GLOBAL {text} AT %I0.0 : BOOL; END_VAR`"
             )),
         })
     }

@@ -5,6 +5,7 @@ use super::unresolved::block_of_another_dialect;
 use super::{logix_operands, test_words};
 use crate::diagnostic::{Missing, Subject};
 use crate::dialect::{Dialect, missing};
+use crate::log::Log;
 use crate::names::{functions, is_instruction};
 use crate::prelude;
 use crate::spelling::nearest;
@@ -13,7 +14,8 @@ use staunch_ir::Type;
 use staunch_runtime::Family;
 
 /// Functions of C and other languages, and what to write for them.
-const OF_C: [(&str, &str); 22] = [
+const OF_C: [(&str, &str); 23] = [
+    ("STR", "write `TO_STRING(x)`"),
     ("POW", "write `EXPT(base, exponent)`, or `base ** exponent`"),
     ("FABS", "write `ABS(x)`"),
     ("FMOD", "write `x - y * TRUNC(x / y)`"),
@@ -75,7 +77,7 @@ impl<'s> Checker<'_, 's> {
             self.report_type_called(name, ast::PouKind::FunctionBlock);
         } else if Family::ALL.into_iter().any(|it| is_instruction(it, name.text)) {
             self.report_instruction(name);
-        } else if let Some(error) = of_another_dialect(name) {
+        } else if let Some(error) = of_another_dialect(name, &self.decl.log) {
             self.report(error);
         } else if let Some(counter) = s5_counter(name.text).filter(|_| self.decl.dialect(name.span) == Dialect::Siemens)
         {
@@ -140,14 +142,15 @@ impl<'s> Checker<'_, 's> {
         let around = self.slot.map_or(&[][..], |it| &self.decl.pous[self.decl.home(it)].ast.routines).iter();
         let around = around.filter(|it| matches!(it.kind, ast::PouKind::Method | ast::PouKind::Action));
         // Nobody means `NOT()`.
-        let standard = functions::names().filter(|it| *it != "NOT").map(|it| -> &str { it });
+        let standard =
+            functions::names().filter(|it| !["NOT", "AND", "OR", "XOR"].contains(it)).map(|it| -> &str { it });
         let named = own.chain(around.map(|it| it.name.text)).chain(instances.map(|it| it.name.text));
         nearest(name.text, named.chain(standard)).map(str::to_owned)
     }
 }
 
 /// A function, or one of a library, that another dialect has.
-fn of_another_dialect(name: ast::Name<'_>) -> Option<Diagnostic> {
+fn of_another_dialect(name: ast::Name<'_>, log: &Log<'_>) -> Option<Diagnostic> {
     let (dialect, is_library) = match functions::owner(name.text) {
         Some(dialect) => (dialect, false),
         None => (prelude::owner(name.text)?, true),
@@ -163,7 +166,7 @@ fn of_another_dialect(name: ast::Name<'_>) -> Option<Diagnostic> {
     let rounds = !is_library && name.text.eq_ignore_ascii_case("ROUND");
     Some(match rounds {
         true => error.help("`REAL_TO_DINT(x)` rounds to the nearest, halves to the even one"),
-        false => error.help(dialect.how_to_choose()),
+        false => error.help(log.how_to_have(dialect)),
     })
 }
 

@@ -283,8 +283,11 @@ impl<'s> Checker<'_, 's> {
         let others = own.chain(self.decl.names.all()).take(searched).filter(|it| Key(it) != Key(name.text));
         let near = nearest(name.text, others);
         let enumerators = self.decl.names.enumerators.keys().map(|key| key.0);
-        let near =
-            near.or_else(|| nearest(name.text, enumerators)).or_else(|| nearest(name.text, CONSTANTS.into_iter()));
+        let near = self
+            .enumerator_of_beginning(name, near)
+            .or(near)
+            .or_else(|| nearest(name.text, enumerators))
+            .or_else(|| nearest(name.text, CONSTANTS.into_iter()));
         if let Some(helped) = self.help_on_s7_name(name, &error) {
             error = match near {
                 Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
@@ -302,6 +305,17 @@ impl<'s> Checker<'_, 's> {
             error = error.help(format!("call the function: `{}(…)`", name.text));
         }
         self.report(error);
+    }
+
+    /// The one enumerator that begins with the name, where nothing that begins alike is nearer: `Drain` of `Draining`.
+    fn enumerator_of_beginning(&self, name: ast::Name<'s>, near: Option<&str>) -> Option<&'s str> {
+        let begins = |long: &str, start: &str| long.get(..start.len()).is_some_and(|it| it.eq_ignore_ascii_case(start));
+        let first = name.text.get(..1)?;
+        if name.text.len() < 3 || near.is_some_and(|it| begins(it, first)) {
+            return None;
+        }
+        let mut longer = self.decl.names.enumerators.keys().map(|it| it.0).filter(|it| begins(it, name.text));
+        longer.next().filter(|_| longer.next().is_none())
     }
 
     /// Where a variable of the POU has the name, after the initial value that names it.

@@ -89,6 +89,20 @@ fn mark_listed(instances: &mut [Instance], classes: &[Class]) {
     }
 }
 
+/// An address that the configuration of the devices gives, in the system that the program moves from.
+fn address_of_devices(address: ast::Name<'_>, name: ast::Name<'_>, others: usize) -> Diagnostic {
+    let message = format!("`{}` gets its address from the devices' configuration", name.text);
+    let area = &address.text[..2];
+    let lint =
+        Diagnostic::new(Code::W0617, address.span, message).label("this system wants the address in the program");
+    let lint = match others {
+        0 => lint,
+        1 => lint.note("so does 1 more variable"),
+        _ => lint.note(format!("so do {others} more variables")),
+    };
+    lint.help(format!("write an address of its width: `{area}X0.0` for a BOOL, `{area}W2` for an INT"))
+}
+
 fn last_name<'s>(path: &ast::Expr<'s>) -> Option<ast::Name<'s>> {
     match &path.kind {
         ast::ExprKind::Member(_, name) | ast::ExprKind::Name(name) => Some(*name),
@@ -358,10 +372,18 @@ impl<'s> Declarations<'s> {
         let globals = self.globals.iter().map(|it| it.decl);
         let open = declared.chain(globals).filter(|it| it.known_address().is_none());
         let open: Vec<_> = open.filter_map(|it| Some((it.address?, it.names.first()?))).collect();
-        for (address, name) in open {
-            if self.dialect(address.span) != Dialect::Codesys && !bound.contains(&Key(name.text)) {
-                self.report(crate::types::address::wrong(address));
+        let is_open = |it: &(ast::Name<'s>, &ast::Name<'s>)| {
+            !self.dialect(it.0.span).leaves_addresses_open() && !bound.contains(&Key(it.1.text))
+        };
+        let open: Vec<_> = open.into_iter().filter(is_open).collect();
+        if self.log.options.moved_from.is_some_and(Dialect::leaves_addresses_open) {
+            if let Some((address, name)) = open.first() {
+                self.report(address_of_devices(*address, **name, open.len() - 1));
             }
+            return;
+        }
+        for (address, _) in open {
+            self.report(crate::types::address::wrong(address));
         }
     }
 

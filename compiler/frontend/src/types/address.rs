@@ -133,7 +133,11 @@ pub(crate) fn wrong(name: ast::Name<'_>) -> Diagnostic {
     if name.text.ends_with('*') {
         return Diagnostic::new(Code::E0409, name.span, format!("`{}` is not bound to an address", name.text))
             .label("a VAR_CONFIG gives the address")
-            .help("bind it in the CONFIGURATION: `VAR_CONFIG run.variable AT %IX0.0 : BOOL; END_VAR`");
+            .help(format!(
+                "write an address, `{0}X0.0`; a variable of an instance can have it from the CONFIGURATION: \
+                 `VAR_CONFIG Run.variable AT {0}X0.0 : BOOL; END_VAR`",
+                &name.text[..2]
+            ));
     }
     let numbers = name.text.matches('.').count() + 1;
     let mut parts = name.text.split('.').skip(1);

@@ -199,6 +199,8 @@ codes! {
     W0529 Warning "the system does it otherwise";
     W0530 Warning "an assignment as a condition";
     W0531 Warning "a unit that ends with its file";
+    W0532 Warning "a FOR loop that takes no turn";
+    W0533 Warning "a CASE label that is a difference";
     W0602 Warning "a count is compared beyond its preset";
     W0608 Warning "an unsigned value is compared with a number below zero";
     W0609 Warning "a pin has another name on this system";
@@ -206,4 +208,6 @@ codes! {
     W0613 Warning "a preset that changes during a load";
     W0614 Warning "a FOR up to its counter's limit";
     W0616 Warning "a count down on the falling edge";
+    W0617 Warning "an address that the devices' configuration gives";
+    W0618 Warning "a list of global variables that loses its name";
 }

@@ -10,7 +10,7 @@ use crate::{
 use super::{
     expression::is_latch,
     foreign_reader::{
-        FURTHEST, behind_parentheses, has_braces, is_further_in, is_word, refuse, skip_further_in, skip_rest,
+        FURTHEST, behind_parentheses, has_braces, is_further_in, is_word, refuse, skip_further_in, skip_line,
         skip_to_end_of, skip_tokens, starts_line,
     },
     parser::{In, TokenReader},
@@ -361,7 +361,7 @@ fn each(input: &mut In<'_, '_, '_>) -> bool {
     refuse_each(input);
     match count {
         Some(count) => skip_tokens(input, count),
-        None => skip_rest(input),
+        None => skip_line(input),
     }
     true
 }

@@ -4,7 +4,7 @@
 use crate::{
     ast::BinaryOp,
     diagnostic::{Code, Diagnostic},
-    lex::Kind,
+    lex::{Kind, index},
     source::Span,
 };
 
@@ -336,7 +336,20 @@ pub fn decimal_comma(input: &mut In<'_, '_, '_>) -> bool {
     }
     input.take();
     input.take();
-    let whole = last.to(after);
+    let mut whole = last.to(after);
+    let mut is_group = is_group;
+    // `1,000,000`
+    while input.kind() == Kind::Comma && matches!(input.kind_ahead(1), Kind::Integer | Kind::Real) {
+        let at = input.number();
+        let (comma, next) = (input.here(), input.state().place(at + 1));
+        if whole.end != comma.start || comma.end != next.start {
+            break;
+        }
+        input.take();
+        input.take();
+        whole = whole.to(next);
+        is_group = true;
+    }
     let text = input.text(whole);
     if is_group {
         let meant = text.replace(',', "_");
@@ -422,10 +435,21 @@ pub fn down_to(input: &mut In<'_, '_, '_>) -> bool {
         return false;
     }
     let span = input.take();
+    let state = input.state();
+    let line = state.text[..index(span.start)].rfind('\n').map_or(0, |it| it + 1);
+    let begun = state.text[line..index(span.start)].trim();
+    let limit = state.text[index(span.end)..].lines().next().unwrap_or_default();
+    let limit = limit.to_ascii_uppercase().find(" DO").map(|it| limit[..it].trim());
+    let meant = match limit {
+        Some(limit) if begun.get(..4).is_some_and(|it| it.eq_ignore_ascii_case("FOR ")) => {
+            format!("{begun} TO {limit} BY -1 DO")
+        }
+        Some(_) | None => "FOR i := 10 TO 1 BY -1 DO".to_owned(),
+    };
     input.report(
         Diagnostic::new(Code::E0020, span, "a FOR loop counts down with a negative step")
             .label("expected `TO`")
-            .help("write `FOR i := 10 TO 1 BY -1 DO`"),
+            .help(format!("write `{meant}`")),
     );
     true
 }

@@ -26,6 +26,8 @@ pub fn brace_list<'t, 's: 't>(open: &'static str, close: &'static str) -> impl R
         let Some(list) = list else { return Err(input.problem(Expected::Other)) };
         state.braces.push(list.span);
         let whole = Span { start: list.span.start - 1, end: list.span.end + 1, ..list.span };
+        // Members of a structure have names.
+        let (open, close) = if list.text.contains(":=") { ("(", ")") } else { (open, close) };
         let meant = format!("{open}{}{close}", list.text);
         input.report(
             Diagnostic::new(Code::E0020, whole, "Structured Text has no lists in braces")

@@ -217,6 +217,10 @@ pub fn misspelt_qualifier(input: &mut In<'_, '_, '_>) -> Option<Kind> {
         return None;
     }
     let span = input.here();
+    // `CONST n : INT`; `const int n` is a declaration as in C.
+    if input.text(span).eq_ignore_ascii_case("CONST") && input.kind_ahead(2) == Kind::Colon {
+        return Some(Kind::Constant);
+    }
     nearest_of(input.text(span), QUALIFIERS)
 }
 

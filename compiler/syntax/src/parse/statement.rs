@@ -51,12 +51,39 @@ fn list<'s>(
                     return;
                 }
             }
-            _ if ends(input) => return,
+            _ if ends(input) || is_label_around(input) => return,
             Kind::Name if routine::begins(input).is_some() || chart::begins(input) => return,
             Kind::Name if unsupported::skip(input) || foreign_syntax::begin_or_end(input) => {}
             _ => statements.push(statement(input)),
         }
     }
+}
+
+/// Whether a label of a CASE is here that is around the block: that has no end of its own.
+fn is_label_around(input: &mut In<'_, '_, '_>) -> bool {
+    let is_within = matches!(input.state().open.as_slice(), [around @ .., (innermost, _)]
+        if *innermost != Kind::EndCase && around.iter().any(|it| it.0 == Kind::EndCase));
+    let may_begin = matches!(input.kind(), Kind::Integer | Kind::Based | Kind::Prefix | Kind::Name);
+    is_within && may_begin && input.on_new_line() && is_clear_label(input)
+}
+
+/// Whether the tokens ahead are a label and a statement. `x : 5;` is an assignment with a misspelt sign.
+fn is_clear_label(input: &mut In<'_, '_, '_>) -> bool {
+    if is_jump_label(input) {
+        return false;
+    }
+    let mut ahead = 0;
+    while matches!(
+        input.kind_ahead(ahead),
+        Kind::Name | Kind::Dot | Kind::DotDot | Kind::Comma | Kind::Prefix | Kind::Integer | Kind::Based
+    ) {
+        ahead += 1;
+    }
+    let starts = matches!(
+        input.kind_ahead(ahead + 1),
+        Kind::Name | Kind::If | Kind::Case | Kind::For | Kind::While | Kind::Repeat | Kind::Semicolon
+    );
+    ahead > 0 && input.kind_ahead(ahead) == Kind::Colon && starts
 }
 
 fn statement<'s>(input: &mut In<'_, '_, 's>) -> Statement<'s> {
@@ -613,12 +640,15 @@ fn for_loop<'s>(input: &mut In<'_, '_, 's>) -> Parsed<StatementKind<'s>> {
             input.expect(Kind::Assign)?;
         }
         let from = expression(input)?;
-        if !foreign_syntax::down_to(input) {
+        let is_down = foreign_syntax::down_to(input);
+        if !is_down {
             input.expect(Kind::To)?;
         }
         let to = expression(input)?;
-        let by =
-            if input.eat(Kind::By).is_some() || foreign_syntax::step(input) { Some(expression(input)?) } else { None };
+        let by = match input.eat(Kind::By).is_some() || foreign_syntax::step(input) {
+            true => Some(expression(input)?),
+            false => is_down.then(|| unread(opened)),
+        };
         let by = by.map(Box::new);
         Ok((Box::new(counter), Box::new(from), Box::new(to), by))
     });
