@@ -27,7 +27,26 @@ struct Disk<'a> {
 impl Host for Disk<'_> {
     fn unit(&self, path: &Path) -> Result<Unit, String> {
         let folder = path.parent().unwrap_or(path);
-        let found = Project::find(folder)?;
+        self.unit_of(path, Project::find(folder)).or_else(|why| {
+            let alone = self.unit_of(path, Ok(None)).map_err(|_| why.clone())?;
+            Ok(Unit { problem: Some(why), ..alone })
+        })
+    }
+
+    fn test(&self, path: &Path, title: &str) -> Result<Work<Vec<TestResult>>, String> {
+        child::test(self.common, &files(path)?, title)
+    }
+
+    fn compare(&self, path: &Path, from: Dialect, to: Dialect) -> Result<Work<String>, String> {
+        child::compare(self.common, &files(path)?, from, to)
+    }
+}
+
+impl Disk<'_> {
+    /// The program of a file, by the settings that were found for its folder.
+    fn unit_of(&self, path: &Path, found: Result<Option<Project>, String>) -> Result<Unit, String> {
+        let folder = path.parent().unwrap_or(path);
+        let found = found?;
         let settings = found.as_ref().map_or(folder, |it| &it.folder).join("staunch.toml");
         let has_settings = found.is_some();
         let mut project = found.unwrap_or_default();
@@ -53,15 +72,8 @@ impl Host for Disk<'_> {
             levels: session::levels(self.common, &project)?,
             layout: project.layout.clone(),
             choice: (!is_chosen).then_some(Choice { accepting: other_dialects::accepting, settings, has_settings }),
+            problem: None,
         })
-    }
-
-    fn test(&self, path: &Path, title: &str) -> Result<Work<Vec<TestResult>>, String> {
-        child::test(self.common, &files(path)?, title)
-    }
-
-    fn compare(&self, path: &Path, from: Dialect, to: Dialect) -> Result<Work<String>, String> {
-        child::compare(self.common, &files(path)?, from, to)
     }
 }
 

@@ -212,8 +212,12 @@ fn run_with(
 ) -> Option<Compilation> {
     let mut log = Log::new(sources, options);
     log.index = index.as_ref().map(|it| Recorder::new(it.asked, it.stop.clone()));
-    let Some(files) = parse_all(sources, options, &mut log.diagnostics) else {
-        return Some(Compilation::rejected(log.diagnostics));
+    let (files, is_whole) = parse_all(sources, options, &mut log.diagnostics);
+    // An editor is answered from the other files.
+    let said = (!is_whole).then(|| std::mem::take(&mut log.diagnostics));
+    let said = match said {
+        Some(said) if index.is_none() => return Some(Compilation::rejected(said)),
+        said => said,
     };
     if let Some(index) = &mut index {
         index.declare(&files);
@@ -268,6 +272,9 @@ fn run_with(
     let program = program.filter(|_| keep == Bodies::Kept);
     let compilation = finish(program, declarations.log, &said_once::units(&files), unassigned, left_out);
     let mut compilation = Compilation { tests, coverage, readdressed, ..compilation };
+    if let Some(said) = said {
+        compilation = Compilation::rejected(said);
+    }
     if has_tests && !options.tests {
         // Unit tests that do not run are still checked.
         let mut found = run(sources, &Options { tests: true, ..options.clone() }, Bodies::Dropped, index).diagnostics;
@@ -408,12 +415,12 @@ fn is_incomplete(source: &Source) -> bool {
     source.problems().iter().any(|it| matches!(it.trouble, Trouble::Broken | Trouble::Absent))
 }
 
-/// The files' trees; `None` where one is no Structured Text, of which alone is then said so.
+/// The files' trees, and whether they are the program: where a file is no Structured Text, that alone is said, and its tree is empty.
 fn parse_all<'s>(
     sources: &'s Sources,
     options: &Options,
     diagnostics: &mut Vec<Diagnostic>,
-) -> Option<Vec<ast::File<'s>>> {
+) -> (Vec<ast::File<'s>>, bool) {
     let mut foreign = Vec::new();
     let mut files = Vec::new();
     let mut is_broken = false;
@@ -428,6 +435,7 @@ fn parse_all<'s>(
         diagnostics.extend(source.problems().iter().map(|it| problem(number, it)));
         let Some((file, found)) = parsed else {
             is_broken = true;
+            files.push(ast::File::default());
             continue;
         };
         files.push(file);
@@ -444,16 +452,16 @@ fn parse_all<'s>(
     if !foreign.is_empty() {
         diagnostics.retain(|it| it.code == Code::E0033);
         diagnostics.extend(foreign);
-        return None;
+        return (files, false);
     }
     if is_broken {
         // What a part of such a file is good for is not known.
         let is_undecided = |number| files.iter().any(|it| it.undecided.iter().any(|it| it.file == number));
         diagnostics.retain(|it| it.code == Code::E0033 || !is_undecided(it.span.file));
-        return None;
+        return (files, false);
     }
     decide_later(&mut files, sources, options, diagnostics);
-    Some(files)
+    (files, true)
 }
 
 /// Reads the files once more whose conditions ask for what is declared.

@@ -17,7 +17,8 @@ pub struct TestResult {
 
 /// Finds the files of projects, and runs them as they are on disk.
 pub trait Host {
-    /// The program that a file is a part of, as it is on disk. A file of no project is a program by itself.
+    /// The program that a file is a part of, as it is on disk. A file of no project is a program by itself, and one of a project that
+    /// cannot be read.
     ///
     /// # Errors
     /// A sentence that says what is wrong: with the project's settings, or with a file that cannot be read.
@@ -47,6 +48,8 @@ pub struct Unit {
     pub layout: Style,
     /// Where nobody has chosen the dialect.
     pub choice: Option<Choice>,
+    /// Why the project could not be read, where this is the file alone.
+    pub problem: Option<String>,
 }
 
 /// A dialect that may be another one.

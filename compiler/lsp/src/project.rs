@@ -189,6 +189,13 @@ impl Project {
         Some(Analysis::of(&self.unit, Arc::new(sources), asked, &Stop::default()))
     }
 
+    /// What is known of the names around a place, where the file has another text.
+    pub fn around_in(&mut self, documents: &Documents, place: Place, text: &str) -> Analysis {
+        let mut sources = self.around(documents, place.file);
+        sources.replace(place.file, text);
+        Analysis::of(&self.unit, Arc::new(sources), Asked::Around(place.file, place.offset), &Stop::default())
+    }
+
     /// A file as it is, and what the others declare.
     fn around(&mut self, documents: &Documents, file: u16) -> Sources {
         let typed = self.sources(documents);

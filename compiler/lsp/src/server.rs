@@ -418,17 +418,12 @@ impl Server<'_> {
     pub fn problems(&mut self, path: &Path) -> Vec<gen_lsp_types::Diagnostic> {
         let project = match self.project_of(path) {
             Ok(at) => at,
-            Err(why) => {
-                return vec![gen_lsp_types::Diagnostic {
-                    source: Some("staunch".to_owned()),
-                    message: gen_lsp_types::Message::String(why),
-                    ..Default::default()
-                }];
-            }
+            Err(why) => return vec![problems::of_project(why)],
         };
         let analysis = self.whole(project);
         let project = &self.projects[project];
         let mut found = project.file(path).map(|it| problems::of(&analysis, it)).unwrap_or_default();
+        found.extend(project.unit.problem.clone().map(problems::of_project));
         if !project.dialects.is_empty() {
             found.extend(dialects::hint(&found, &project.dialects));
         }

@@ -208,9 +208,6 @@ impl<'s> Reading<'s> {
                 it.help(format!("a number of base 16 is written `16#{digits}`")).fix(self.span(place), "16#")
             }
             Some('$') => it.help("a number of base 16 is written `16#FF`"),
-            Some('~') if self.text[index(place.1)..].starts_with('=') => {
-                it.help("unequal is written `<>`").fix(Span { end: place.1 + 1, ..self.span(place) }, "<>")
-            }
             Some('~') => it.help("write `NOT`").fix(self.span(place), "NOT "),
             Some('?') => it.help("choose a value with `SEL(condition, value_if_false, value_if_true)`"),
             Some('}') => it.help("a block ends with its own keyword: `END_IF`, `END_FOR`, `END_WHILE`"),

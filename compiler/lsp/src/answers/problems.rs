@@ -8,10 +8,24 @@ use staunch_frontend::{Code as Lint, Severity};
 
 const PAGES: &str = "https://github.com/staunch-lang/staunch/blob/main/docs/diagnostics.md";
 
-/// What there is to say of a file.
+/// What there is to say of a file, and which others of its project cannot be read.
 pub fn of(analysis: &Analysis, file: u16) -> Vec<Diagnostic> {
-    let all = analysis.index.diagnostics.iter().filter(|it| it.span.file == file);
-    all.filter_map(|it| analysis.levels().apply(it.clone())).map(|it| shown(analysis, &it)).collect()
+    let all = &analysis.index.diagnostics;
+    let unread = all.iter().filter(|it| it.code == Lint::E0033 && it.span.file != file);
+    let unread = unread.map(|it| of_project(format!("{}: {}", analysis.source(it.span.file).path, it.message)));
+    let own = all.iter().filter(|it| it.span.file == file);
+    let own = own.filter_map(|it| analysis.levels().apply(it.clone())).map(|it| shown(analysis, &it));
+    unread.chain(own).collect()
+}
+
+/// What is wrong with a project, at the beginning of each of its files.
+pub fn of_project(why: String) -> Diagnostic {
+    Diagnostic {
+        severity: Some(DiagnosticSeverity::Error),
+        source: Some("staunch".to_owned()),
+        message: Message::String(why),
+        ..Diagnostic::default()
+    }
 }
 
 pub fn shown(analysis: &Analysis, it: &staunch_frontend::Diagnostic) -> Diagnostic {

@@ -76,10 +76,26 @@ fn of_pou(analysis: &Analysis, id: DefId) -> Option<Called> {
 }
 
 pub fn help(analysis: &Analysis, place: Place) -> Option<SignatureHelp> {
+    help_by(analysis, analysis, place)
+}
+
+/// The file with the call around a place without its arguments, as a statement: one that is being typed is no expression yet.
+pub fn closed(analysis: &Analysis, place: Place) -> Option<String> {
+    let source = analysis.source(place.file);
+    let calls = calls(place.file, &source.text);
+    let (call, _) = around(&calls, place.offset)?;
+    let index = |it: u32| usize::try_from(it).ok();
+    let rest = source.text.get(index(place.offset)?..)?;
+    let rest = rest.find('\n').map_or("", |it| &rest[it..]);
+    Some(format!("{});{rest}", source.text.get(..=index(call.open)?)?))
+}
+
+/// The same, where another analysis knows what the call's name means.
+pub fn help_by(analysis: &Analysis, knows: &Analysis, place: Place) -> Option<SignatureHelp> {
     let calls = calls(place.file, &analysis.source(place.file).text);
     let (call, at) = around(&calls, place.offset)?;
-    let (_, meaning) = analysis.index.at(call.name.file, call.name.start)?;
-    let all = called(analysis, analysis.text(call.name), &meaning);
+    let (_, meaning) = knows.index.at(call.name.file, call.name.start)?;
+    let all = called(knows, analysis.text(call.name), &meaning);
     let given = call.arguments.get(at).and_then(|it| it.name).map(|it| analysis.text(it));
     let active = |it: &Called| {
         let named = given.and_then(|name| it.parameters.iter().position(|it| it.0.eq_ignore_ascii_case(name)));

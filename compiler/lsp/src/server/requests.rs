@@ -55,7 +55,7 @@ impl Server<'_> {
                 self.at(params, |it, place| Some(navigate::references(it, place, with_declaration)))
             }
             Method::TextDocumentDocumentHighlight => self.at(params, |it, place| Some(navigate::highlights(it, place))),
-            Method::TextDocumentSignatureHelp => self.at(params, signature::help),
+            Method::TextDocumentSignatureHelp => self.signature(params),
             Method::TextDocumentPrepareCallHierarchy => {
                 self.at(params, |it, place| hierarchy::prepare_calls(it, place).map(|it| vec![it]))
             }
@@ -219,6 +219,20 @@ impl Server<'_> {
         let path = self.path(&params)?;
         let position = read::<TextDocumentPositionParams>(params)?.position;
         self.at_position(&path, position, answer)
+    }
+
+    /// What a call takes, also while it is typed.
+    fn signature(&mut self, params: Json) -> Answer {
+        let path = self.path(&params)?;
+        let position = read::<TextDocumentPositionParams>(params)?.position;
+        let project = self.project_of(&path)?;
+        let Some((analysis, place)) = self.near(project, &path, position) else { return json(None::<()>) };
+        if let Some(help) = signature::help(&analysis, place) {
+            return json(Some(help));
+        }
+        let text = signature::closed(&analysis, place).filter(|_| !analysis.source(place.file).is_assembled());
+        let closed = text.map(|text| self.projects[project].around_in(&self.documents, place, &text));
+        json(closed.and_then(|it| signature::help_by(&analysis, &it, place)))
     }
 
     /// The same for what an earlier answer named.

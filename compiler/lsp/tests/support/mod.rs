@@ -44,6 +44,7 @@ impl Host for Folder {
             levels: Default::default(),
             layout: Style::default(),
             choice: self.choice.clone(),
+            problem: None,
         })
     }
 

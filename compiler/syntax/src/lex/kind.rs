@@ -159,6 +159,7 @@ kinds! {
         // Signs of other languages, to be answered in ours.
         EqualEqual "=="
         BangEqual "!="
+        TildeEqual "~="
         AndAnd "&&"
         OrOr "||"
         Bang "!"

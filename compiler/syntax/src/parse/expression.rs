@@ -29,7 +29,7 @@ fn infix(kind: Kind) -> Option<(BinaryOp, u8)> {
         Kind::And | Kind::Ampersand | Kind::AndAnd => (BinaryOp::And, 3),
         Kind::AndThen => (BinaryOp::AndThen, 3),
         Kind::Equal | Kind::EqualEqual => (BinaryOp::Eq, 4),
-        Kind::Unequal | Kind::BangEqual | Kind::SlashEqual => (BinaryOp::Ne, 4),
+        Kind::Unequal | Kind::BangEqual | Kind::TildeEqual | Kind::SlashEqual => (BinaryOp::Ne, 4),
         Kind::Less => (BinaryOp::Lt, 5),
         Kind::Greater => (BinaryOp::Gt, 5),
         Kind::LessEqual => (BinaryOp::Le, 5),
@@ -50,6 +50,7 @@ fn is_foreign(kind: Kind) -> bool {
         kind,
         Kind::EqualEqual
             | Kind::BangEqual
+            | Kind::TildeEqual
             | Kind::SlashEqual
             | Kind::AndAnd
             | Kind::OrOr
