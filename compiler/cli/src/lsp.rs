@@ -5,7 +5,7 @@ mod child;
 use crate::args::Common;
 use crate::{input, other_dialects, session};
 use staunch_build::{Project, listing};
-use staunch_frontend::{Dialect, Source, Sources};
+use staunch_frontend::{Dialect, Severity, Source, Sources, check};
 use staunch_lsp::{Choice, Connection, Host, TestResult, Unit, Work};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -53,7 +53,10 @@ impl Disk<'_> {
         let libraries = session::seen(&project, "libraries", &project.libraries)?;
         let sources = match listed(&project, path)? {
             Some(named) => input::read(&named, &libraries)?,
-            None => self.alone(path, &libraries)?,
+            None => {
+                let alone = self.alone(path, &libraries)?;
+                self.folder(path, &project, &libraries, &alone).unwrap_or(alone)
+            }
         };
         let is_chosen = self.common.dialect.is_some() || project.dialect.is_some() || sources.dialect().is_some();
         let options = {
@@ -93,7 +96,22 @@ fn listed(project: &Project, path: &Path) -> Result<Option<Vec<PathBuf>>, String
     Ok([own].into_iter().chain(lists_above(path.parent().unwrap_or(path))).find(is_in))
 }
 
+/// A folder of more files is not looked at for the program of one of them.
+const MOST: usize = 200;
+
 impl Disk<'_> {
+    /// The folder of a file that no project lists, where that is a program, and the file is none by itself.
+    fn folder(&self, path: &Path, project: &Project, libraries: &[PathBuf], alone: &Sources) -> Option<Sources> {
+        let folder = path.parent().filter(|_| path.exists())?.to_owned();
+        let files = input::found(std::slice::from_ref(&folder)).ok()?;
+        let options = session::options(self.common, project).ok()?;
+        let is_wrong = |it: &Sources| check(it, &options).iter().any(|it| it.severity == Severity::Error);
+        if !(2..=MOST).contains(&files.len()) || !files.iter().any(|it| is_same(it, path)) || !is_wrong(alone) {
+            return None;
+        }
+        input::read(&[folder], libraries).ok().filter(|it| !is_wrong(it))
+    }
+
     /// A file that no project lists; one that is not on disk yet is empty.
     #[allow(clippy::unused_self, reason = "it reads the disk")]
     fn alone(&self, path: &Path, libraries: &[PathBuf]) -> Result<Sources, String> {

@@ -41,7 +41,9 @@ mod lints;
 
 pub use staunch_syntax::{ast, format, vendor};
 
-pub use diagnostic::{Code, Diagnostic, Fix, Format, Label, Level, Levels, Severity, Style, Subject, excerpt, render};
+pub use diagnostic::{
+    Code, Diagnostic, Fix, Format, Label, Level, Levels, Missing, Severity, Style, Subject, excerpt, render,
+};
 pub use dialect::{Dialect, rules};
 pub use index::{Asked, DefId, Definition, DefinitionKind, Index, Meaning, Offer, Stop, Use};
 pub use mutate::{Mutant, mutants};

@@ -2,6 +2,7 @@
 
 pub mod actions;
 pub mod complete;
+pub mod declare;
 pub mod describe;
 pub mod dialects;
 pub mod folds;

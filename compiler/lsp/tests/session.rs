@@ -185,7 +185,7 @@ fn a_call_shows_its_signature() {
     let params = json!({ "textDocument": { "uri": uri("main.st") }, "range": range });
     let hints = editor.ask("textDocument/inlayHint", params);
     let shown: Vec<_> = hints.as_array().expect("a list").iter().map(|it| it["label"].as_str().expect("one")).collect();
-    assert_eq!(shown, ["x:", "factor:"]);
+    assert_eq!(shown, ["x:", "factor:", "= 0", "= 1", "= 2"]);
     editor.close();
 }
 
@@ -412,4 +412,109 @@ fn a_dialect_that_accepts_the_sources_is_offered() {
     editor.write("main.st", "PROGRAM Main END_PROGRAM\n");
     assert!(hints(&editor.problems("main.st")).is_empty());
     editor.close();
+}
+
+/// All code actions of a file.
+fn all_actions(editor: &mut Editor, name: &str, text: &str) -> Vec<Json> {
+    let end = json!({ "line": text.lines().count(), "character": 0 });
+    let range = json!({ "start": { "line": 0, "character": 0 }, "end": end });
+    let params = json!({ "textDocument": { "uri": uri(name) }, "range": range, "context": { "diagnostics": [] } });
+    editor.ask("textDocument/codeAction", params).as_array().expect("a list").clone()
+}
+
+#[test]
+fn what_is_missing_is_declared_by_an_action() {
+    let text = "\
+INTERFACE I_Station
+METHOD Go : BOOL
+VAR_INPUT speed : INT; END_VAR
+END_METHOD
+PROPERTY Speed : INT
+GET
+END_GET
+END_PROPERTY
+END_INTERFACE
+FUNCTION_BLOCK Belt IMPLEMENTS I_Station
+VAR n : INT; END_VAR
+n := n + 1;
+END_FUNCTION_BLOCK
+PROGRAM Main
+VAR
+    b : Belt;
+    r : REAL;
+END_VAR
+b();
+fast := b.Go(3) AND r > 2.0;
+kept := r;
+wait := T#3s;
+IF ready THEN count := 70000; END_IF
+END_PROGRAM
+";
+    let mut text = text.to_owned();
+    for title in [
+        "Implement 2 METHODs and PROPERTYs",
+        "Declare `fast : BOOL`",
+        "Declare `kept : REAL`",
+        "Declare `wait : TIME`",
+        "Declare `ready : BOOL`",
+        "Declare `count : DINT`",
+    ] {
+        let mut editor = Editor::open(Dialect::Codesys, &[("main.st", &text)]);
+        let actions = all_actions(&mut editor, "main.st", &text);
+        let action = actions.iter().find(|it| it["title"] == title);
+        let action = action.unwrap_or_else(|| panic!("{title} is not among {actions:#?}"));
+        text = edited(&text, &action["edit"]["changes"][uri("main.st")]);
+    }
+    let mut sources = staunch_frontend::Sources::default();
+    sources.add(staunch_frontend::Source::new("main.st", text.clone()));
+    let found = check(&sources, &Options { dialect: Dialect::Codesys, ..Options::default() });
+    let errors: Vec<_> = found.iter().filter(|it| it.severity == staunch_frontend::Severity::Error).collect();
+    assert!(errors.is_empty(), "{text}\n{errors:#?}");
+}
+
+#[test]
+fn a_call_that_is_typed_has_its_signature() {
+    for (typed, parameters) in [("first(", "run"), ("level := Scale(level, ", "factor"), ("level := LIMIT(1.0, ", "MN")]
+    {
+        let text = MAIN.replace("first(run := level > 1.0, limit := 3);", typed);
+        let mut editor = Editor::open(Dialect::Iec, &[("pump.st", PUMP), ("main.st", &text)]);
+        let (line, column) = of(&text, typed, 0);
+        let shown = editor.at("signatureHelp", "main.st", (line, column + typed.len() as u32));
+        let label = shown["signatures"][0]["label"].as_str().unwrap_or_default().to_owned();
+        assert!(label.contains(parameters), "{typed}: {shown}");
+    }
+}
+
+#[test]
+fn addresses_and_values_of_enumerators_are_shown() {
+    let text = "TYPE Mode : (Idle, Run := 5, Hold); END_TYPE\nPROGRAM Main\nVAR x AT %IW4 : INT; m : Mode; END_VAR\nx;\nEND_PROGRAM\n";
+    let mut editor = Editor::open(Dialect::Iec, &[("main.st", text)]);
+    let shown = editor.at("hover", "main.st", of(text, "x AT", 0));
+    assert_eq!(shown["contents"]["value"], json!("```iecst\nVAR x AT %IW4 : INT\n```"));
+    let range = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 9, "character": 0 } });
+    let hints =
+        editor.ask("textDocument/inlayHint", json!({ "textDocument": { "uri": uri("main.st") }, "range": range }));
+    let labels: Vec<_> =
+        hints.as_array().expect("a list").iter().map(|it| it["label"].as_str().unwrap_or_default()).collect();
+    assert_eq!(labels, ["= 0", "= 6"]);
+}
+
+#[test]
+fn a_comment_that_ends_with_a_point_is_no_member_access() {
+    let text = MAIN.replace("level := Scale", "// It is scaled.\nlev := Scale");
+    let mut editor = Editor::open(Dialect::Iec, &[("pump.st", PUMP), ("main.st", &text)]);
+    let (line, column) = of(&text, "lev :=", 0);
+    let shown = editor.at("completion", "main.st", (line, column + 3));
+    assert!(shown.to_string().contains("\"level\""), "{shown}");
+}
+
+#[test]
+fn a_file_that_cannot_be_read_leaves_the_others_answered() {
+    let broken =
+        "<?xml version=\"1.0\"?><TcPlcObject><POU Name=\"FB\"><Declaration><![CDATA[FUNCTION_BLOCK FB]]></Declaration>";
+    let mut editor = Editor::open(Dialect::Codesys, &[("pump.st", PUMP), ("main.st", MAIN), ("FB.TcPOU", broken)]);
+    let shown = editor.at("hover", "main.st", of(MAIN, "first(run", 0));
+    assert_eq!(shown["contents"]["value"], json!("```iecst\nVAR first : Pump\n```"));
+    let said = editor.ask("textDocument/diagnostic", json!({ "textDocument": { "uri": uri("main.st") } }));
+    assert!(said.to_string().contains("FB.TcPOU"), "{said}");
 }

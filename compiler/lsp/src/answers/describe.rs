@@ -39,7 +39,8 @@ fn declaration(analysis: &Analysis, id: DefId) -> String {
         DefinitionKind::Variable(_) | DefinitionKind::Constant | DefinitionKind::Member => {
             let value = initial(analysis, definition).map_or_else(String::new, |it| format!(" := {it}"));
             let head = if definition.kind == DefinitionKind::Member { String::new() } else { format!("{word} ") };
-            format!("{head}{}{value}", typed(name))
+            let address = address(analysis, definition).map_or_else(String::new, |it| format!(" AT {it}"));
+            format!("{head}{}{value}", typed(&format!("{name}{address}")))
         }
         DefinitionKind::Structure | DefinitionKind::Union | DefinitionKind::Enumeration | DefinitionKind::Type => {
             let text = ty.unwrap_or_default();
@@ -71,6 +72,14 @@ fn declaration(analysis: &Analysis, id: DefId) -> String {
         | DefinitionKind::Task
         | DefinitionKind::Instance => format!("{word} {name}"),
     }
+}
+
+/// What is after `AT` in a declaration.
+fn address<'a>(analysis: &'a Analysis, definition: &Definition) -> Option<&'a str> {
+    let between = staunch_frontend::Span { start: definition.name.end, end: definition.ty?.start, ..definition.name };
+    let text = analysis.text(between);
+    let address = text.get(text.find('%')?..)?;
+    Some(address.split(|it: char| it == ':' || it.is_whitespace()).next()?)
 }
 
 /// What is after `:=` in a declaration.

@@ -2,11 +2,12 @@
 
 use crate::project::Analysis;
 use gen_lsp_types::{BaseSymbolInformation, DocumentSymbol, SymbolInformation, SymbolKind};
+use rustc_hash::FxHashMap;
 use staunch_frontend::{DefId, Definition, DefinitionKind};
 
 #[allow(deprecated, reason = "the field is a part of the structure")]
-fn symbol(analysis: &Analysis, id: DefId, definition: &Definition, file: u16) -> DocumentSymbol {
-    let children: Vec<_> = outline_of(analysis, Some(id), file);
+fn symbol(analysis: &Analysis, id: DefId, definition: &Definition, parts: &Parts<'_>) -> DocumentSymbol {
+    let children: Vec<_> = outline_of(analysis, Some(id), parts);
     let whole = analysis.range(definition.extent);
     let selection_range = analysis.range(definition.name);
     // A declaration that does not enclose its name is not its parent.
@@ -25,15 +26,20 @@ fn symbol(analysis: &Analysis, id: DefId, definition: &Definition, file: u16) ->
     }
 }
 
+/// The declarations of a file, by what they are a part of.
+type Parts<'a> = FxHashMap<Option<DefId>, Vec<(DefId, &'a Definition)>>;
+
 /// The declarations of a file, those of a POU in it.
 pub fn outline(analysis: &Analysis, file: u16) -> Vec<DocumentSymbol> {
-    outline_of(analysis, None, file)
+    let mut parts = Parts::default();
+    let own = analysis.index.ids().filter(|it| it.1.name.file == file && !analysis.text(it.1.name).is_empty());
+    own.for_each(|it| parts.entry(it.1.owner).or_default().push(it));
+    outline_of(analysis, None, &parts)
 }
 
-fn outline_of(analysis: &Analysis, owner: Option<DefId>, file: u16) -> Vec<DocumentSymbol> {
-    let own = analysis.index.ids().filter(|it| it.1.owner == owner && it.1.name.file == file);
-    let named = own.filter(|it| !analysis.text(it.1.name).is_empty());
-    named.map(|(id, it)| symbol(analysis, id, it, file)).collect()
+fn outline_of(analysis: &Analysis, owner: Option<DefId>, parts: &Parts<'_>) -> Vec<DocumentSymbol> {
+    let own = parts.get(&owner).into_iter().flatten();
+    own.map(|(id, it)| symbol(analysis, *id, it, parts)).collect()
 }
 
 /// The declarations of a project whose names hold the letters that are asked for, in their order.

@@ -2,8 +2,8 @@
 
 use super::{Refused, Server};
 use crate::answers::{
-    actions, complete, dialects, folds, hierarchy, hints, layout, lenses, navigate, rename, select, signature, symbols,
-    tokens,
+    actions, complete, declare, dialects, folds, hierarchy, hints, layout, lenses, navigate, rename, select, signature,
+    symbols, tokens,
 };
 use crate::place::Place;
 use crate::project::{self, Analysis};
@@ -111,6 +111,7 @@ impl Server<'_> {
                 let project = &self.projects[project];
                 let Some(file) = project.file(&path) else { return Ok(Json::Null) };
                 let mut found = actions::actions(&analysis, file, within);
+                found.extend(declare::actions(&analysis, file, within));
                 if let Some(choice) = project.unit.choice.as_ref().filter(|it| it.has_settings || self.can_create)
                     && actions::has_errors(&analysis, file, within)
                 {

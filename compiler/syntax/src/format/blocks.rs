@@ -127,6 +127,7 @@ const WORDS: &[Words] = &[
     words("VAR_CONFIG", "END_VAR", Block::Declarations),
     words("VAR_ACCESS", "END_VAR", Block::Declarations),
     words("VAR_INST", "END_VAR", Block::Declarations),
+    words("CONST", "END_CONST", Block::Declarations),
     words("STRUCT", "END_STRUCT", Block::Declarations),
     words("UNION", "END_UNION", Block::Declarations),
     words("TYPE", "END_TYPE", Block::Type),

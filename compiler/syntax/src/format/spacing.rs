@@ -21,6 +21,8 @@ pub fn is_apart((before, role): Placed<'_, '_>, (token, own): Placed<'_, '_>) ->
     match (before.kind, token.kind) {
         // Together these begin a comment.
         (Kind::OpenParen, Kind::Star | Kind::Power) | (Kind::Slash, Kind::Slash | Kind::Star) => true,
+        // `0xFF`, `5s`: a number of another language, which has a fix as it is.
+        (Kind::Integer | Kind::Real, Kind::Name) => token.is_apart,
         // `T# 2` is a prefix without its literal.
         (Kind::Prefix, _) => token.is_apart && joins(before, token),
         (
