@@ -21,6 +21,7 @@ mod pointed;
 mod read_once;
 mod set_first;
 mod unseen;
+mod walked;
 mod within;
 
 use crate::alias::{Alias, Frame, alias};
@@ -38,6 +39,7 @@ use read_once::read_once;
 use set_first::is_set_first;
 use staunch_runtime::Repr;
 use unseen::Others;
+use walked::walked;
 use within::twice;
 
 /// A loop that touches more places than this stays: each is compared with each.
@@ -74,6 +76,7 @@ pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
         let mut routine = program.routines[at].clone();
         let declared = routine.locals.len();
         directly(&program, &mut routine, &mut body, declared);
+        walked(&program, &known, &routine, &mut body);
         if gain.of_ends {
             twice(&program, &mut routine, &mut body, declared);
         }
