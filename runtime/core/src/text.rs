@@ -177,9 +177,11 @@ impl<'a, U: Unit> Destination<'a, U> {
     pub fn write(&mut self, units: &[U]) {
         let free = self.units.get_mut(usize::from(*self.len)..).unwrap_or_default();
         let count = free.len().min(units.len()).min(usize::from(u16::MAX - *self.len));
-        if let (Some(to), Some(from)) = (free.get_mut(..count), units.get(..count)) {
-            // `copy_from_slice` has a panic, which is not always seen to be out of reach.
-            to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
+        if let (Some(to), Some(from)) = (free.get_mut(..count), units.get(..count))
+            // So the panic in `copy_from_slice` is seen to be out of reach.
+            && to.len() == from.len()
+        {
+            to.copy_from_slice(from);
         }
         *self.len += count as u16;
     }
