@@ -66,7 +66,8 @@ pub struct Gain<'a> {
 
 impl Gain<'_> {
     /// Of all that can be.
-    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false, of_repeats: true, of_ends: false };
+    pub const WHOLE: Self =
+        Self { suits: &|_| true, of_reads: true, of_scalars: false, of_repeats: true, of_ends: false };
 }
 
 /// The program with such loops.
@@ -80,7 +81,7 @@ pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
         let mut routine = program.routines[at].clone();
         let declared = routine.locals.len();
         directly(&program, &mut routine, &mut body, declared);
-        walked(&program, &known, &routine, &mut body);
+        walked(&program, (&RULES, &known), &routine, &mut body);
         if gain.of_ends {
             twice(&program, &mut routine, &mut body, declared);
         }

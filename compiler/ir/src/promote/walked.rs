@@ -12,11 +12,12 @@
 //! by a constant: a multiple of what goes from element to element. The pointer has been given the address of an element, or of the array,
 //! before, and no reference leads to it. All elements that the loop may look at are within the array. So no such access can fault,
 //! which is no less than the object that references name: that is a whole variable. The pointer is moved behind the loop where
-//! nothing in it looks at the pointer and nothing can leave it, by a fault or otherwise. A loop with a CONTINUE stays, since that
-//! may leave the pointer behind the counter, and so does everything in a program with pools: what is in one may be deleted.
+//! nothing in it looks at the pointer and nothing can leave it, by a fault or otherwise. Three kinds stay as they are: a loop with a
+//! CONTINUE, which may leave the pointer behind the counter; one that takes the address of what the pointer leads to, which is no fault
+//! beyond the array either; and all loops in a program with pools, since what is in one may be deleted.
 
 use crate::alias::{Frame, changes};
-use crate::effects::{Effects, statement_faults};
+use crate::effects::{Effects, Rules, statement_faults};
 use crate::loops::{checked_locals, constant_position};
 use crate::visit::{self, Rewrite};
 use crate::{
@@ -28,15 +29,16 @@ use std::slice::from_ref;
 /// So many statements after the pointer got its value a loop is looked for.
 const FAR: usize = 16;
 
-/// In a routine's statements; `known` is what each routine does.
-pub(super) fn walked(program: &Program, known: &[Effects], routine: &Routine, body: &mut Block) {
+/// In a routine's statements; `known` is what each routine does, by these rules.
+pub(super) fn walked(program: &Program, (rules, known): (&Rules, &[Effects]), routine: &Routine, body: &mut Block) {
     if !program.references.is_empty() && program.reached.is_some() && program.places.is_empty() {
-        Walker { program, known, routine, layout: None }.block(body);
+        Walker { program, rules, known, routine, layout: None }.block(body);
     }
 }
 
 struct Walker<'p> {
     program: &'p Program,
+    rules: &'p Rules,
     known: &'p [Effects],
     /// Without its body.
     routine: &'p Routine,
@@ -144,7 +146,8 @@ impl Walker<'_> {
         let (first, last) = (number(&it.first)?, number(&it.last)?);
         let further = (last - first) / step;
         let is_counted = (last - first) * step.signum() >= 0 && matches!(it.counter.ty, Type::Elementary(_));
-        if !it.is_private || !is_counted || it.may_leave_range() || has_continue(&it.body) {
+        let stays = has_continue(&it.body) || takes_address(&it.body, &start.pointer);
+        if !it.is_private || !is_counted || it.may_leave_range() || stays {
             return None;
         }
         let array = self.program.array(start.id);
@@ -205,7 +208,7 @@ impl Walker<'_> {
             visit::accesses(it, &mut |place, _| can &= !touches(place, pointer));
         });
         let checked = checked_locals(self.routine);
-        can && !statement_faults(self.program, &super::RULES, self.known, self.routine, (Vec::new(), checked), statement)
+        can && !statement_faults(self.program, self.rules, self.known, self.routine, (Vec::new(), checked), statement)
     }
 }
 
@@ -244,6 +247,19 @@ fn times(mut statement: Statement, count: i128) -> Option<Statement> {
 fn has_continue(body: &[Statement]) -> bool {
     let mut found = false;
     visit::statements(body, &mut |it| found |= matches!(it.kind, StatementKind::Continue));
+    found
+}
+
+/// Whether the address of what the pointer leads to is taken, which is no fault behind the array either.
+fn takes_address(body: &[Statement], pointer: &Place) -> bool {
+    let mut found = false;
+    visit::statements(body, &mut |it| {
+        visit::all_exprs(it, &mut |expr| {
+            if let ExprKind::AddressOf(place) = &expr.kind {
+                found |= place.is_followed() && touches(place, pointer);
+            }
+        });
+    });
     found
 }
 
