@@ -41,6 +41,9 @@ struct Keeper<'p> {
 impl Keeper<'_> {
     /// The first statements of a loop's body, its test and turn, say how it runs, and stay.
     fn block(&mut self, block: &mut Block, first: usize) {
+        if !block.iter().any(stores_element) {
+            return;
+        }
         let mut at = first;
         while at < block.len() {
             // What stores an element has to be near.

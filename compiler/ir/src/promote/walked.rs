@@ -283,13 +283,12 @@ fn way(place: &Place, pointer: &Place, ty: Type) -> Option<usize> {
 fn touches(place: &Place, pointer: &Place) -> bool {
     let at = place.projections.iter().position(|it| matches!(it, Projection::Deref { .. }));
     let named = at.map_or_else(|| place.clone(), |at| place.before(at, pointer.ty));
-    let is_part = named.projections.len() <= pointer.projections.len()
+    named.projections.len() <= pointer.projections.len()
         && named.root == pointer.root
         && named.projections.iter().zip(&pointer.projections).all(|(a, b)| match (a, b) {
             (Projection::Field(a), Projection::Field(b)) => a == b,
             _ => true,
-        });
-    is_part
+        })
 }
 
 /// A statement of a loop that nothing sees but itself, and which leaves no loop.
