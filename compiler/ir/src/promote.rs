@@ -16,11 +16,13 @@
 //! array, or what a reference leads to, might be the same storage. That an index is within its bounds is also known more
 //! often: a local counter is private to its loop.
 
+mod kept;
 mod local;
 mod pointed;
 mod read_once;
 mod set_first;
 mod unseen;
+mod walked;
 mod within;
 
 use crate::alias::{Alias, Frame, alias};
@@ -32,12 +34,14 @@ use crate::{
     Block, Const, Expr, For, Local, LocalId, Place, Program, Projection, Root, Routine, Statement, StatementKind, Type,
     Value,
 };
+use kept::kept;
 use local::{MOST_LOCALS, name, private_head};
 use pointed::directly;
 use read_once::read_once;
 use set_first::is_set_first;
 use staunch_runtime::Repr;
 use unseen::Others;
+use walked::walked;
 use within::twice;
 
 /// A loop that touches more places than this stays: each is compared with each.
@@ -54,13 +58,16 @@ pub struct Gain<'a> {
     /// Whether a WHILE or REPEAT is taken that can fault and stores neither to an element of an array nor through a reference: where the
     /// back end itself keeps variables in registers up to a fault, more of them only have to be moved there.
     pub of_scalars: bool,
+    /// Whether a variable that is read again after an element of an array was stored is read once.
+    pub of_repeats: bool,
     /// Whether a loop gets a second version that needs no checks of its indices.
     pub of_ends: bool,
 }
 
 impl Gain<'_> {
     /// Of all that can be.
-    pub const WHOLE: Self = Self { suits: &|_| true, of_reads: true, of_scalars: false, of_ends: false };
+    pub const WHOLE: Self =
+        Self { suits: &|_| true, of_reads: true, of_scalars: false, of_repeats: true, of_ends: false };
 }
 
 /// The program with such loops.
@@ -74,12 +81,16 @@ pub fn promoted(program: &Program, gain: Gain<'_>) -> Program {
         let mut routine = program.routines[at].clone();
         let declared = routine.locals.len();
         directly(&program, &mut routine, &mut body, declared);
+        walked(&program, (&RULES, &known), &routine, &mut body);
         if gain.of_ends {
             twice(&program, &mut routine, &mut body, declared);
         }
         let (known, around) = (&known, Vec::new());
         Promoter { program: &program, gain, known, routine: &mut routine, declared, checked, around }.block(&mut body);
         read_once(&program, &mut routine, &mut body, declared);
+        if gain.of_repeats {
+            kept(&program, &mut routine, &mut body, declared);
+        }
         program.routines[at] = Routine { body, ..routine };
     }
     program

@@ -67,7 +67,7 @@ pub(crate) fn emit_named(
         Aim::Size | Aim::Debugging => &RULES_OF_SIZE,
     };
     let suits = |it: &Statement| is_in_line(it, aim);
-    let gain = Gain { suits: &suits, of_reads: false, of_scalars: true, of_ends: aim == Aim::Speed };
+    let gain = Gain { suits: &suits, of_reads: false, of_scalars: true, of_repeats: false, of_ends: aim == Aim::Speed };
     // A debugger finds each variable where it is declared.
     let program = if aim == Aim::Debugging { program } else { &promoted(program, gain) };
     let mut workspace = Workspace { context: output.make_context(), builder: FunctionBuilderContext::new() };

@@ -172,6 +172,15 @@ impl<'a, U: Unit> Destination<'a, U> {
         Self { len, units, before: 0 }
     }
 
+    /// Lengthens the string by so many units, as far as there is room: those that are to be written.
+    #[inline]
+    pub fn lengthen(&mut self, count: usize) -> &mut [U] {
+        let free = self.units.get_mut(usize::from(*self.len)..).unwrap_or_default();
+        let count = free.len().min(count).min(usize::from(u16::MAX - *self.len));
+        *self.len += count as u16;
+        free.get_mut(..count).unwrap_or_default()
+    }
+
     /// Appends as much of `units` as still fits.
     #[inline]
     pub fn write(&mut self, units: &[U]) {

@@ -37,10 +37,10 @@ impl Declarations<'_> {
         }
     }
 
-    /// The field of a global variable, and its type.
+    /// The field of a global variable, and its type; a program with mistakes may lack it.
     fn field_of_global(&self, at: usize) -> Option<(usize, Type)> {
         let field = self.addresses.field_of_global(at)?;
-        Some((field, self.program.structure(self.program.globals).fields[field].ty))
+        Some((field, self.program.structure(self.program.globals).fields.get(field)?.ty))
     }
 
     fn start_as(&mut self, field: usize, value: Const) {

@@ -200,3 +200,36 @@ fn a_loop_whose_ends_show_its_indices_is_there_twice() {
         "an end that can fault"
     );
 }
+
+#[test]
+fn what_is_read_again_after_an_element_is_read_once() {
+    let int_type = count().ty;
+    let step = assign(count(), Expr::apply(Op::Add, int_type, vec![load(count()), int(1)], AT));
+    let stored = assign(element(count()), int(7));
+    let after = pass(vec![stored.clone(), step.clone()]);
+    assert_eq!(kinds(&after), ["load", "store", "store"]);
+    assert!(matches!(reads(&after, 1).as_slice(), [Root::Local(_)]), "the index");
+    assert!(matches!(reads(&after, 2).as_slice(), [Root::Local(_)]), "what is added to");
+    let written_between = pass(vec![stored.clone(), assign(count(), int(2)), step.clone()]);
+    assert_eq!(kinds(&written_between), ["store", "store", "store"]);
+    let constant = assign(value(Expr::constant(Elementary::Lint, Value::I64(2), AT), 1), int(7));
+    let known = pass(vec![
+        assign(total(), Expr::convert(Conversion::Value, Type::DINT, load(count()), AT)),
+        constant,
+        step.clone(),
+    ]);
+    assert_eq!(kinds(&known), ["store", "store", "store"], "no variable is in doubt");
+    let native = Gain { of_repeats: false, ..Gain::WHOLE };
+    assert_eq!(kinds(&promoted(&sample(vec![stored, step]), native)), ["store", "store"]);
+}
+
+/// The roots of what a statement of the PROGRAM reads.
+fn reads(program: &Program, at: usize) -> Vec<Root> {
+    let mut roots = Vec::new();
+    crate::visit::accesses(&program.routines[MAIN].body[at], &mut |place, access| {
+        if access == crate::visit::Access::Read {
+            roots.push(place.root);
+        }
+    });
+    roots
+}

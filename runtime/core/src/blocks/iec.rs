@@ -16,20 +16,28 @@ use crate::{Context, Scalar};
 pub trait Count: Scalar + Ord + From<bool> {
     fn saturating_add(self, other: Self) -> Self;
     fn saturating_sub(self, other: Self) -> Self;
+    /// One more, one less, or for both the same; it stops at the limits.
+    #[must_use]
+    fn counted(self, up: bool, down: bool) -> Self;
 }
 
 macro_rules! counts {
-    ($($rust:ident)*) => { $(
+    ($($rust:ident $signed:ident $add:ident)*) => { $(
         impl Count for $rust {
             #[inline]
             fn saturating_add(self, other: Self) -> Self { self.saturating_add(other) }
             #[inline]
             fn saturating_sub(self, other: Self) -> Self { self.saturating_sub(other) }
+            #[inline]
+            fn counted(self, up: bool, down: bool) -> Self { self.$add($signed::from(up) - $signed::from(down)) }
         }
     )* };
 }
 
-counts!(i8 i16 i32 i64 u8 u16 u32 u64);
+counts! {
+    i8 i8 saturating_add i16 i16 saturating_add i32 i32 saturating_add i64 i64 saturating_add
+    u8 i8 saturating_add_signed u16 i16 saturating_add_signed u32 i32 saturating_add_signed u64 i64 saturating_add_signed
+}
 
 /// `CTU`: counts up on each rising edge of `cu`, also past `pv`; `q` while `cv >= pv`. Reset
 /// wins over counting; `cv` stops at the type's maximum instead of wrapping.
@@ -154,11 +162,12 @@ impl<T: Count> Ctud<T> {
         let up = self.cu & !self.cu_before;
         let down = self.cd & !self.cd_before;
         (self.cu_before, self.cd_before) = (self.cu, self.cd);
-        // At most one of the two counts, so a limit cannot make the pair lopsided.
-        let raised = self.cv.saturating_add(T::from(up & !down));
-        let counted = raised.saturating_sub(T::from(down & !up));
-        let loaded = if self.ld { self.pv } else { counted };
-        self.cv = if self.r { T::ZERO } else { loaded };
+        self.cv = match (self.r, self.ld) {
+            (true, _) => T::ZERO,
+            (false, true) => self.pv,
+            // In one step, so a limit cannot make the pair lopsided.
+            (false, false) => self.cv.counted(up, down),
+        };
         self.qu = self.cv >= self.pv;
         self.qd = self.cv <= T::ZERO;
     }
