@@ -17,6 +17,7 @@ mod pdu;
 mod points;
 mod registers;
 mod rtu_server;
+mod safe;
 mod served;
 mod server;
 mod shared_memory;
@@ -31,6 +32,7 @@ pub(crate) use attachment::Ended;
 pub use client::{Mistake, check_remotes, openplc_layout};
 pub use gpio::check_pins;
 pub use options::{AtEnd, Connection, Io, SerialUnit, is_address_and_port};
+pub use safe::check_safe;
 
 use crate::map::Map;
 use crate::{Error, Machine};
@@ -51,6 +53,7 @@ impl Attachments {
         if io.connections.len() > Connection::MOST {
             return Err(Error::Usage(format!("--io: a run has up to {} connections", Connection::MOST)));
         }
+        check_safe(map).map_err(|(at, text)| Error::Usage(format!("safe: {}: {text}", map.safe[at].0)))?;
         let points = Points::of(map);
         let mut all: Vec<Box<dyn Attachment>> = Vec::new();
         for connection in &io.connections {

@@ -69,7 +69,8 @@ pub(super) fn plan(pins: &[Pin], map: &Map, points: &Points) -> Result<Planned, 
     let mut planned = Planned { points: Vec::new(), safe: Vec::new(), groups: Vec::new() };
     for (number, pin) in pins.iter().enumerate() {
         let point = checked(pin, &pins[..number], map, points, &planned.points).map_err(|text| (number, text))?;
-        let place = Place { line: pin.line.clone(), point: number, initial: pin.safe.unwrap_or(false) };
+        let safe = pin.safe.or(point.safe.map(|it| it != 0));
+        let place = Place { line: pin.line.clone(), point: number, initial: safe.unwrap_or(false) };
         let is_output = point.area == Area::Output;
         let group = planned.groups.iter_mut().find(|it| {
             it.chip == pin.chip
@@ -89,7 +90,7 @@ pub(super) fn plan(pins: &[Pin], map: &Map, points: &Points) -> Result<Planned, 
             }),
         }
         planned.points.push(point);
-        planned.safe.push(pin.safe);
+        planned.safe.push(safe);
     }
     Ok(planned)
 }
@@ -111,6 +112,9 @@ fn checked(pin: &Pin, before: &[Pin], map: &Map, points: &Points, others: &[Poin
     match point.area {
         Area::Input if pin.safe.is_some() => {
             Err("it is an input, and `safe` is for outputs: declare it at %QX, or remove `safe`".to_owned())
+        }
+        Area::Output if pin.safe.is_some() && point.safe.is_some() => {
+            Err("it has a value in `[safe]`, too: remove one of both".to_owned())
         }
         Area::Output if pin.debounce.is_some() => {
             Err("it is an output, and `debounce` is for inputs: declare it at %IX, or remove `debounce`".to_owned())
