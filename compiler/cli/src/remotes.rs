@@ -18,7 +18,8 @@ const TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Gives a program the servers of its project. An error is a mistake in the project file, with its place.
 pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
-    if !project.is_connected() {
+    // Declarations alone, as one file of a project, run nowhere.
+    if !project.is_connected() || program.instances.is_empty() {
         return Ok(());
     }
     let place = |(number, key, text): (usize, String, String)| {

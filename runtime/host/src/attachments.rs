@@ -39,7 +39,6 @@ use crate::{Error, Machine};
 use attachment::Attachment;
 use client::Client;
 use gpio::Gpio;
-use points::Points;
 use rtu_server::RtuServer;
 use server::Modbus;
 use shared_memory::SharedMemory;
@@ -54,7 +53,7 @@ impl Attachments {
             return Err(Error::Usage(format!("--io: a run has up to {} connections", Connection::MOST)));
         }
         check_safe(map).map_err(|(at, text)| Error::Usage(format!("safe: {}: {text}", map.safe[at].0)))?;
-        let points = Points::of(map);
+        let points = safe::points_of(map);
         let mut all: Vec<Box<dyn Attachment>> = Vec::new();
         for connection in &io.connections {
             all.push(match connection {
@@ -99,7 +98,7 @@ impl Attachments {
 /// What fuzzers hold a Modbus server to: each request has an answer of its function, that fits into a frame; and a frame ends where it is whole.
 #[cfg(fuzzing)]
 pub(crate) fn answered(map: &Map, bytes: &[u8]) {
-    let points = Points::of(map);
+    let points = points::Points::of(map);
     let exchange = exchange::Exchange::new(points.all.len());
     let mut registers = registers::Registers::new(&points.all);
     let mut rest = bytes;

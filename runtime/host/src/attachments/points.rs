@@ -1,7 +1,6 @@
 //! The variables at addresses, each as a place outside and a place in the state.
 
 use super::options::AtEnd;
-use super::safe;
 use crate::Machine;
 use crate::map::{Map, Type, Variable};
 use staunch_runtime::Elementary;
@@ -113,7 +112,6 @@ impl Points {
                 points.add(map, variable, address, base);
             }
         }
-        safe::give(&mut points, map);
         points
     }
 

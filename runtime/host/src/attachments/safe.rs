@@ -20,10 +20,11 @@ pub fn check_safe(map: &Map) -> Result<(), (usize, String)> {
     Ok(())
 }
 
-/// Gives the outputs their safe values. What is wrong with one is said by [`check_safe`].
-pub(super) fn give(points: &mut Points, map: &Map) {
+/// The values at addresses, outputs with their safe values. What is wrong with one of these is said by [`check_safe`].
+pub(super) fn points_of(map: &Map) -> Points {
+    let mut points = Points::of(map);
     let stated: Vec<Write> =
-        map.safe.iter().filter_map(|(name, value)| output(map, points, name, value).ok()).collect();
+        map.safe.iter().filter_map(|(name, value)| output(map, &points, name, value).ok()).collect();
     let mut state = vec![0; if stated.is_empty() { 0 } else { map.size }];
     for write in &stated {
         let bytes = write.over(&state).into_owned();
@@ -34,6 +35,7 @@ pub(super) fn give(points: &mut Points, map: &Map) {
             point.safe = Some(point.read(&state));
         }
     }
+    points
 }
 
 fn output(map: &Map, points: &Points, name: &str, value: &str) -> Result<Write, String> {
@@ -77,7 +79,7 @@ mod tests {
     fn at_end(entries: &[(&str, &str)], at_end: AtEnd) -> Vec<u64> {
         let map = stated(entries);
         assert_eq!(check_safe(&map), Ok(()));
-        Points::of(&map).all.iter().filter(|it| it.area == Area::Output).map(|it| it.at_end(at_end, 7)).collect()
+        points_of(&map).all.iter().filter(|it| it.area == Area::Output).map(|it| it.at_end(at_end, 7)).collect()
     }
 
     #[test]

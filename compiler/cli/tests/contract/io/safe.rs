@@ -80,6 +80,10 @@ fn a_wrong_value_is_reported_at_its_line() {
         ("[safe]\nspeed = 1\n\"%QW2\" = 2\n", "another entry has a value for the same bits"),
         ("[safe]\nMain.speed = 1\n", "a name with a point is in quotes: \"Main.valve\" = true"),
         ("[safe]\nspeed = [1]\n", "`speed` must be true, false, a number, or a value in quotes"),
+        (
+            "[safe]\nmotor = true\n[[gpio]]\nvariable = \"motor\"\nchip = \"gpiochip0\"\nline = 1\nsafe = true\n",
+            "staunch.toml:4: `motor`: it has a value in `[safe]`, too: remove one of both",
+        ),
         ("safe = 3\n", "`safe` must be a table: write `[safe]`, and below it valve = true"),
     ] {
         let folder = Folder::with("io_safe_wrong", &[("main.st", PLANT), ("staunch.toml", settings)]);
@@ -87,4 +91,14 @@ fn a_wrong_value_is_reported_at_its_line() {
             has(&folder.staunch(call).err(2), &[expected]);
         }
     }
+}
+
+/// One file of a project may have no PROGRAM that its connections are of.
+#[test]
+fn declarations_alone_are_connected_with_nothing() {
+    let settings = "[safe]\nmotor = true\n[[modbus]]\nserver = \"127.0.0.1:1\"\n[modbus.map]\nmotor = \"coil 1\"\n";
+    let function = "FUNCTION Half : INT\nVAR_INPUT of : INT; END_VAR\nHalf := of / 2;\nEND_FUNCTION\n";
+    let folder = Folder::with("io_safe_alone", &[("half.st", function), ("staunch.toml", settings)]);
+    folder.staunch("check half.st").err(0);
+    folder.staunch("build half.st --emit rust -q").out(0);
 }

@@ -3,6 +3,7 @@
 use crate::attachments::client::{input_places, values};
 use crate::attachments::options::AtEnd;
 use crate::attachments::points::{Area, Point, Points, Width};
+use crate::attachments::safe::points_of;
 use crate::map::Map;
 use crate::pin::{Bias, Pin, PinLine};
 use crate::remote::Remote;
@@ -54,7 +55,7 @@ pub(super) struct Planned {
 
 /// What is wrong with the lines of a program: the number of one, from 0, and why.
 pub fn check_pins(pins: &[Pin], remotes: &[Remote], map: &Map) -> Result<(), (usize, String)> {
-    let points = Points::of(map);
+    let points = points_of(map);
     let planned = plan(pins, map, &points)?;
     let others: HashSet<_> = remotes.iter().flat_map(|it| input_places(it, map, &points)).collect();
     let is_other = |it: &Point| it.area == Area::Input && others.contains(&(it.offset(), it.bit()));
