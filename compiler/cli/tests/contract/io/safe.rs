@@ -97,7 +97,7 @@ fn a_wrong_value_is_reported_at_its_line() {
 #[test]
 fn declarations_alone_are_connected_with_nothing() {
     let settings = "[safe]\nmotor = true\n[[modbus]]\nserver = \"127.0.0.1:1\"\n[modbus.map]\nmotor = \"coil 1\"\n";
-    let function = "FUNCTION Half : INT\nVAR_INPUT of : INT; END_VAR\nHalf := of / 2;\nEND_FUNCTION\n";
+    let function = "FUNCTION Half : INT\nVAR_INPUT whole : INT; END_VAR\nHalf := whole / 2;\nEND_FUNCTION\n";
     let folder = Folder::with("io_safe_alone", &[("half.st", function), ("staunch.toml", settings)]);
     folder.staunch("check half.st").err(0);
     folder.staunch("build half.st --emit rust -q").out(0);
