@@ -43,6 +43,10 @@ fn runs_alike(program: &Program) {
     staunch_rust::emit(program, &staunch_rust::Options::default());
     object(program, &Target::host().expect("a machine with native code")).expect("verified IR");
     let jit = Jit::new(program).expect("verified IR");
+    // Declarations alone have no state, and nothing that runs.
+    if program.instances.is_empty() {
+        return;
+    }
     let map = staunch_host::Map::parse(&map_text(program, &layout)).expect("the compiler's own map");
     // SAFETY: the code was made of this program, and lives longer than the machine.
     let mut native = unsafe { staunch_host::Compiled::new(&map, jit.init, jit.scan) };

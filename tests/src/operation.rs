@@ -120,6 +120,7 @@ pub fn program(tasks: &[Task]) -> Program {
         remotes: Vec::new(),
         arrays: Vec::new(),
         interfaces: Vec::new(),
+        implementers: Vec::new(),
         references: Vec::new(),
         globals: StructId::next(tasks.len()),
         aliases: Vec::new(),

@@ -4,6 +4,7 @@
 mod gpio;
 mod layout;
 mod modbus;
+mod safe;
 
 pub use gpio::{Gpio, GpioLine};
 pub use modbus::Modbus;
@@ -47,6 +48,8 @@ pub struct Project {
     pub modbus: Vec<Modbus>,
     /// `[[gpio]]`
     pub gpio: Vec<Gpio>,
+    /// `[safe]`: outputs, and their values.
+    pub safe: Vec<(String, String)>,
     /// `[fmt]`
     pub layout: format::Style,
     text: String,
@@ -101,15 +104,23 @@ impl Project {
         line_of(&self.text, key, value).map_or_else(|| self.file(), |line| format!("{}:{line}", self.file()))
     }
 
-    /// Whether a run in real time reads from and writes to something.
+    /// Whether it says something of what a run in real time reads from and writes to.
     pub fn is_connected(&self) -> bool {
-        !self.modbus.is_empty() || !self.gpio.is_empty()
+        !self.modbus.is_empty() || !self.gpio.is_empty() || !self.safe.is_empty()
     }
 
     /// The file and the line of a setting in the table `[[name]]` with this number, from 0.
     pub fn place_in_table(&self, name: &str, number: usize, key: &str) -> String {
-        let head = format!("[[{name}]]");
-        let tables = self.text.match_indices(&head).map(|it| it.0);
+        self.place_below(&format!("[[{name}]]"), number, key)
+    }
+
+    /// The file and the line of a setting in the table `[safe]`.
+    pub fn place_of_safe(&self, key: &str) -> String {
+        self.place_below("[safe]", 0, key)
+    }
+
+    fn place_below(&self, head: &str, number: usize, key: &str) -> String {
+        let tables = self.text.match_indices(head).map(|it| it.0);
         let start = tables.take(number + 1).last().unwrap_or(0);
         let before = self.text[..start].lines().count();
         let line = line_of(&self.text[start..], key, None).unwrap_or(1);
@@ -172,7 +183,7 @@ fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
 }
 
 /// The keys of `staunch.toml`.
-const SETTINGS: [&str; 25] = [
+const SETTINGS: [&str; 26] = [
     "dialect",
     "files",
     "libraries",
@@ -197,6 +208,7 @@ const SETTINGS: [&str; 25] = [
     "verbose",
     "modbus",
     "gpio",
+    "safe",
     "fmt",
 ];
 
@@ -230,6 +242,7 @@ fn set(project: &mut Project, key: &str, value: &toml::Value) -> Result<(), Stri
         "verbose" => project.verbose = flag(key, value)?,
         "modbus" => project.modbus = modbus::read(value)?,
         "gpio" => project.gpio = gpio::read(value)?,
+        "safe" => project.safe = safe::read(value)?,
         "fmt" => project.layout = layout::read(value)?,
         _ => {
             return Err(match nearest(key, SETTINGS.into_iter()) {

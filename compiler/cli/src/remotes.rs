@@ -2,7 +2,9 @@
 //! variables, and given to its map.
 
 use staunch_build::{Modbus, Project};
-use staunch_host::{Map, Mistake, OnLoss, Pin, Remote, WordOrder, check_remotes, openplc_layout, parse_duration};
+use staunch_host::{
+    Map, Mistake, OnLoss, Pin, Remote, WordOrder, check_remotes, check_safe, openplc_layout, parse_duration,
+};
 use staunch_ir::Program;
 use staunch_ir::layout::Layout;
 use std::time::Duration;
@@ -16,7 +18,8 @@ const TIMEOUT: Duration = Duration::from_millis(500);
 
 /// Gives a program the servers of its project. An error is a mistake in the project file, with its place.
 pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
-    if !project.is_connected() {
+    // Declarations alone, as one file of a project, run nowhere.
+    if !project.is_connected() || program.instances.is_empty() {
         return Ok(());
     }
     let place = |(number, key, text): (usize, String, String)| {
@@ -27,12 +30,17 @@ pub fn connect(project: &Project, program: &mut Program) -> Result<(), String> {
         project.modbus.iter().enumerate().map(read).collect::<Result<_, _>>().map_err(place)?;
     server::check_lines(&remotes).map_err(|(number, text)| place((number, "port".to_owned(), text)))?;
     let map = staunch_ir::symbols::map_text(program, &Layout::new(program));
-    let map = Map::parse(&map).map_err(|it| it.to_string())?;
+    let map = Map::parse(&map).map_err(|it| it.to_string())?.with_safe(project.safe.clone());
+    check_safe(&map).map_err(|(number, text)| {
+        let name = &project.safe[number].0;
+        format!("{}: `{name}`: {text}", project.place_of_safe(name))
+    })?;
     lay_out(project, &map, &mut remotes).map_err(place)?;
     check_remotes(&remotes, &map)
         .map_err(|(number, mistake)| place(mistaken(number, &project.modbus[number], mistake)))?;
     let pins = gpio::pins(project, &remotes, &map)?;
-    program.remotes = remotes.iter().flat_map(Remote::lines).chain(pins.iter().map(Pin::record)).collect();
+    let safe = project.safe.iter().map(|(name, value)| format!("safe\t{name}\t{value}"));
+    program.remotes = remotes.iter().flat_map(Remote::lines).chain(pins.iter().map(Pin::record)).chain(safe).collect();
     Ok(())
 }
 

@@ -1,6 +1,6 @@
 //! `--emit systemd`: a unit that runs an executable as a service, in real time.
 
-use staunch_host::DEFAULT_CYCLE;
+use staunch_host::{DEFAULT_CYCLE, Line};
 use staunch_ir::{Program, Retain};
 use std::path::Path;
 
@@ -21,6 +21,7 @@ pub fn unit(program: &Program, cycle: Option<i64>, out: &Path) -> String {
     };
     let given = cycle.map_or_else(String::new, |it| format!(" --cycle {it}ns"));
     let watchdog = seconds(program, cycle);
+    let groups = groups(program);
     let (restart, priority) = (2 * watchdog, PRIORITY + 1);
     format!(
         "# The executable is /usr/local/bin/{name}, this file /etc/systemd/system/{name}.service. To start it, now and with the
@@ -45,7 +46,7 @@ LimitRTPRIO={priority}
 LimitMEMLOCK=infinity
 OOMScoreAdjust=-900
 DynamicUser=yes
-StateDirectory={name}
+{groups}StateDirectory={name}
 NoNewPrivileges=yes
 ProtectSystem=strict
 ProtectHome=yes
@@ -54,6 +55,22 @@ ProtectHome=yes
 WantedBy=multi-user.target
 "
     )
+}
+
+/// What a serial port and the lines of a board ask for, whose devices belong to groups.
+fn groups(program: &Program) -> String {
+    let needs = |is_there: bool, name| is_there.then_some(name);
+    let is_serial =
+        |it: &String| it.strip_prefix("remote\t").and_then(|it| it.split('\t').nth(1)).is_some_and(Line::is_port);
+    let serial = needs(program.remotes.iter().any(is_serial), "dialout");
+    let lines = needs(program.remotes.iter().any(|it| it.starts_with("gpio\t")), "gpio");
+    let all: Vec<&str> = serial.into_iter().chain(lines).collect();
+    match all.is_empty() {
+        true => String::new(),
+        false => {
+            format!("# Who may open the devices: `ls -l` shows their groups.\nSupplementaryGroups={}\n", all.join(" "))
+        }
+    }
 }
 
 /// The names of units, and of what systemd makes for them, have few characters.

@@ -61,6 +61,7 @@ pub fn program(arrays: Vec<Array>, structs: Vec<Struct>, routines: Vec<Routine>)
         remotes: Vec::new(),
         arrays,
         interfaces: Vec::new(),
+        implementers: Vec::new(),
         references: Vec::new(),
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),

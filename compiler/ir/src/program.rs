@@ -36,6 +36,8 @@ pub struct Program {
     pub arrays: Vec<Array>,
     /// The names of the INTERFACEs.
     pub interfaces: Vec<String>,
+    /// Of each INTERFACE, the classes that something refers to, by the number that a reference has for it: their states.
+    pub implementers: Vec<Vec<(u64, StructId)>>,
     /// The types of references. What they point to may be after what holds them.
     pub references: Vec<RefType>,
     /// A structure is after those it contains.

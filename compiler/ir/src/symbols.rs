@@ -37,6 +37,7 @@ pub const VERSION: u32 = 1;
 ///            in the place of the address, then baud rate  parity  stop bits; then its registers
 /// register   variable  place at the server, `input-register 3`
 /// gpio       variable  chip  number or name  that of the line  low or high: the level of TRUE  bias  debounce in us, or 0  TRUE, FALSE or -: safe
+/// safe       variable  its value before the first scan and at the end of a run
 /// object     offset in the machine  size
 /// globals    struct:id  offset
 /// instance   number  name  program  struct:id  offset  interval in ns  priority

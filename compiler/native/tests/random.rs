@@ -109,6 +109,7 @@ impl Maker {
             instances: instances.collect(),
             arrays: maker.arrays,
             interfaces: Vec::new(),
+            implementers: Vec::new(),
             references: Vec::new(),
             globals,
             aliases: Vec::new(),

@@ -17,6 +17,7 @@ mod pdu;
 mod points;
 mod registers;
 mod rtu_server;
+mod safe;
 mod served;
 mod server;
 mod shared_memory;
@@ -31,13 +32,13 @@ pub(crate) use attachment::Ended;
 pub use client::{Mistake, check_remotes, openplc_layout};
 pub use gpio::check_pins;
 pub use options::{AtEnd, Connection, Io, SerialUnit, is_address_and_port};
+pub use safe::check_safe;
 
 use crate::map::Map;
 use crate::{Error, Machine};
 use attachment::Attachment;
 use client::Client;
 use gpio::Gpio;
-use points::Points;
 use rtu_server::RtuServer;
 use server::Modbus;
 use shared_memory::SharedMemory;
@@ -51,7 +52,8 @@ impl Attachments {
         if io.connections.len() > Connection::MOST {
             return Err(Error::Usage(format!("--io: a run has up to {} connections", Connection::MOST)));
         }
-        let points = Points::of(map);
+        check_safe(map).map_err(|(at, text)| Error::Usage(format!("safe: {}: {text}", map.safe[at].0)))?;
+        let points = safe::points_of(map);
         let mut all: Vec<Box<dyn Attachment>> = Vec::new();
         for connection in &io.connections {
             all.push(match connection {
@@ -96,7 +98,7 @@ impl Attachments {
 /// What fuzzers hold a Modbus server to: each request has an answer of its function, that fits into a frame; and a frame ends where it is whole.
 #[cfg(fuzzing)]
 pub(crate) fn answered(map: &Map, bytes: &[u8]) {
-    let points = Points::of(map);
+    let points = points::Points::of(map);
     let exchange = exchange::Exchange::new(points.all.len());
     let mut registers = registers::Registers::new(&points.all);
     let mut rest = bytes;

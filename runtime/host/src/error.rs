@@ -23,8 +23,8 @@ pub enum Error {
     Map { line: usize, text: String },
     /// The program faulted.
     Fault { fault: Fault, scan: u64, instance: String, path: String },
-    /// A scan took longer than its period, where that ends a run in real time. Times in nanoseconds.
-    Overrun { scan: u64, instance: String, took: Time, period: Time },
+    /// A scan had not ended when the next one was due, where that ends a run in real time. Times in nanoseconds.
+    Overrun { scan: u64, instance: String, late: Time, took: Time, period: Time },
     /// A server of inputs and outputs does not answer, where that ends a run in real time.
     Connection { name: String, trouble: String },
 }
@@ -50,8 +50,8 @@ impl Error {
                 fault.at.column,
                 quote(instance)
             ),
-            Self::Overrun { scan, instance, took, period } => format!(
-                "{{\"reason\":\"fault\",\"message\":{message},\"kind\":\"overrun\",\"took_ns\":{took},\"period_ns\":{period},\
+            Self::Overrun { scan, instance, late, took, period } => format!(
+                "{{\"reason\":\"fault\",\"message\":{message},\"kind\":\"overrun\",\"late_ns\":{late},\"took_ns\":{took},\"period_ns\":{period},\
                  \"scan\":{scan},\"program\":{}}}",
                 quote(instance)
             ),
@@ -90,9 +90,14 @@ impl fmt::Display for Error {
             Self::File { path, doing, error } => write!(f, "cannot {doing} {}: {error}", path.display()),
             Self::ClosedPipe => f.write_str("the output was closed"),
             Self::Map { line, text } => write!(f, "the program's map, line {line}: {text}"),
-            Self::Overrun { scan, instance, took, period } => {
+            Self::Overrun { scan, instance, late, took, period } => {
+                f.write_str("overrun: a scan ")?;
+                // Another program, or the machine, has kept it from its time.
+                if took < period {
+                    write!(f, "began {} late and ", rounded(*late))?;
+                }
                 let (took, period) = (rounded(*took), rounded(*period));
-                write!(f, "overrun: a scan took {took} of {period} (scan {scan}, program {instance}, --overrun fault)")
+                write!(f, "took {took} of {period} (scan {scan}, program {instance}, --overrun fault)")
             }
             Self::Connection { name, trouble } => write!(f, "connection: {name}: {trouble}"),
             Self::Fault { fault, scan, instance, path } => {

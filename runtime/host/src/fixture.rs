@@ -59,6 +59,18 @@ pub fn map_with(fields: &[(&str, usize, &str, &str)]) -> Map {
 
 /// The fields of `Garage`'s state, which hold what its variables say.
 pub fn map() -> Map {
+    Map::parse(&map_text()).unwrap()
+}
+
+/// The same with `button`, an input among the global variables.
+pub fn map_with_button() -> Map {
+    let button = "field\tbutton\tBOOL\t5\tglobal\t-\t%IX0.1\t-\n";
+    Map::parse(&map_text().replace("field\tlamp\t", &format!("{button}field\tlamp\t"))).unwrap()
+}
+
+pub const BUTTON: usize = 5;
+
+fn map_text() -> String {
     let mut fields = String::new();
     for line in MAP.lines().filter(|it| it.starts_with("variable") && !it.contains("external")) {
         let cells: Vec<&str> = line.split('\t').collect();
@@ -66,7 +78,7 @@ pub fn map() -> Map {
         let cells = [cells[2], cells[4], &(offset - 8).to_string(), cells[3], cells[6], cells[7], cells[8]];
         fields += &format!("field\t{}\n", cells.join("\t"));
     }
-    Map::parse(&MAP.replace("struct\t3\tglobals", &(fields + "struct\t3\tglobals"))).unwrap()
+    MAP.replace("struct\t3\tglobals", &(fields + "struct\t3\tglobals"))
 }
 
 pub fn offset_of(path: &str) -> usize {
@@ -107,7 +119,7 @@ impl Machine for Garage {
     }
 
     fn write(&mut self, offset: usize, bytes: &[u8]) {
-        Domain::of(&map()).write(&mut self.state, offset, bytes);
+        Domain::of(&map_with_button()).write(&mut self.state, offset, bytes);
     }
 
     fn init(&mut self) {

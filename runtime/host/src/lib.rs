@@ -56,7 +56,8 @@ pub mod fuzzing;
 
 pub use args::{Wish, parse_duration, parse_moment, parse_options, parse_priority, parse_within};
 pub use attachments::{
-    AtEnd, Connection, Io, Mistake, SerialUnit, check_pins, check_remotes, is_address_and_port, openplc_layout,
+    AtEnd, Connection, Io, Mistake, SerialUnit, check_pins, check_remotes, check_safe, is_address_and_port,
+    openplc_layout,
 };
 pub use bench::{BenchOptions, Timing, bench};
 pub use compiled::{Code, Compiled, Init, Scan, Snapshot};

@@ -36,6 +36,8 @@ pub struct Map {
     /// What a run in real time reads from and writes to.
     pub(crate) remotes: Vec<Remote>,
     pub(crate) pins: Vec<Pin>,
+    /// Of outputs, by name or address, and the values as they are written.
+    pub(crate) safe: Vec<(String, String)>,
     pub instances: Vec<Instance>,
 }
 
@@ -153,6 +155,12 @@ impl Map {
         !self.remotes.is_empty() || !self.pins.is_empty()
     }
 
+    /// The same with these safe values of outputs, by name or address.
+    #[must_use]
+    pub fn with_safe(self, safe: Vec<(String, String)>) -> Self {
+        Self { safe, ..self }
+    }
+
     /// Reads the text that the compiler wrote.
     pub fn parse(text: &str) -> Result<Self, Error> {
         let mut map = Self::default();
@@ -230,6 +238,11 @@ impl Map {
                 let (name, place) = (record.text()?.to_owned(), record.text()?.to_owned());
                 let remote = self.remotes.last_mut().ok_or_else(|| record.error("a register of no server"))?;
                 remote.variables.push((name, place));
+                Ok(())
+            }
+            "safe" => {
+                let name = record.text()?.to_owned();
+                self.safe.push((name, record.text()?.to_owned()));
                 Ok(())
             }
             "gpio" => {

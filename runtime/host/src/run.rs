@@ -1,5 +1,6 @@
 //! A run: scan after scan, with what goes in and what comes out.
 
+mod around;
 mod aside;
 pub(crate) mod options;
 mod ring;
@@ -8,6 +9,7 @@ mod summary;
 pub use options::{Moment, Options};
 pub use summary::Summary;
 
+use around::{AROUND, Programs, Scan, Step};
 use aside::Aside;
 
 use crate::attachments::{Attachments, Ended};
@@ -85,6 +87,7 @@ pub fn run(machine: &mut dyn Machine, map: &Map, options: &Options) -> Result<Su
         attachments: None,
         alone: None,
         summary: Summary::default(),
+        has_begun: false,
         minor_faults: MinorFaults::default(),
     };
     runner.start()?;
@@ -164,6 +167,8 @@ struct Runner<'a> {
     /// The program that has nothing around its scans.
     alone: Option<Due>,
     summary: Summary,
+    /// All that a run needs was there.
+    has_begun: bool,
     minor_faults: MinorFaults,
 }
 
@@ -207,6 +212,7 @@ impl Runner<'_> {
             let line = if self.options.json { summary::figures_json } else { summary::figures_text };
             self.real = Some(RealTime::start(self.map, &self.schedule, &self.options.pacing, line)?);
         }
+        self.has_begun = true;
         if self.options.scans == Some(0) {
             self.record(subject, 0)?;
         }
@@ -255,12 +261,10 @@ impl Runner<'_> {
         if self.real.is_some() {
             return self.real_scan(subject, number, due, placed.is_some());
         }
-        self.stimulate(number, due)?;
-        if self.options.debugged {
-            self.machine.scan_begins(number, due);
-        }
-        let ran = self.programs(number, due, placed.is_some());
-        self.after(subject, number, due, ran)?;
+        self.around(
+            subject,
+            &mut Scan { number, time: due, ended: due, programs: Programs::Due { placed: placed.is_some() } },
+        )?;
         let ends = self.options.debugged && self.machine.ends();
         Ok((!ends).then_some(due))
     }
@@ -276,29 +280,63 @@ impl Runner<'_> {
         let Some(real) = &self.real else { return Ok(None) };
         let Some(now) = real.wait(due) else { return Ok(None) };
         let Some(turn) = self.schedule.pick(now, placed, real.catches_up()) else { return Ok(None) };
-        self.stimulate(number, now)?;
-        if let Some(attachments) = &mut self.attachments {
-            attachments.before(self.machine)?;
-            // An input of the stimulus is not the world's.
-            self.hold();
-        }
-        let began = self.now();
-        let ran = self.forced(turn.program, number, began);
-        let ended = self.now();
-        if let Some(attachments) = self.attachments.as_mut().filter(|_| ran.is_ok()) {
-            attachments.after(self.machine.state());
-        }
-        let whole = ran.is_ok();
-        self.after(subject, number, began, ran)?;
-        let scanned = self.real.as_mut().filter(|_| whole).map(|it| it.add(&turn, began, ended));
-        match scanned {
+        let mut scan = Scan { number, time: now, ended: now, programs: Programs::One(turn.program) };
+        self.around(subject, &mut scan)?;
+        let Scan { time: began, ended, .. } = scan;
+        match self.real.as_mut().map(|it| it.add(&turn, began, ended)) {
             Some(Scanned { faults: true, took }) => Err(Error::Overrun {
                 scan: number,
                 instance: self.map.instances[turn.program.instance].name.clone(),
+                late: began - turn.due,
                 took,
                 period: turn.program.period,
             }),
             _ => Ok(Some(began)),
+        }
+    }
+
+    /// A scan, with what is around it.
+    fn around(&mut self, subject: &Subject<'_>, scan: &mut Scan) -> Result<(), Error> {
+        let mut ran = Ok(());
+        for step in AROUND {
+            match step {
+                Step::Programs => ran = self.programs(scan),
+                _ if ran.is_err() && !step.is_after_a_fault() => {}
+                _ => self.step(step, subject, scan)?,
+            }
+        }
+        ran
+    }
+
+    /// What comes before and after the programs.
+    #[inline]
+    fn step(&mut self, step: Step, subject: &Subject<'_>, scan: &Scan) -> Result<(), Error> {
+        match step {
+            Step::Stimulus => self.stimulate(scan.number, scan.time)?,
+            Step::Inputs => self.inputs()?,
+            Step::Programs => {}
+            Step::Outputs => self.attachments.iter_mut().for_each(|it| it.after(self.machine.state())),
+            Step::Messages => self.tell(scan.number)?,
+            Step::Retained => self.keep(scan.number),
+            Step::Trace => self.record(subject, scan.time)?,
+        }
+        Ok(())
+    }
+
+    /// What the world outside writes; an input of the stimulus is not the world's.
+    fn inputs(&mut self) -> Result<(), Error> {
+        let Some(attachments) = &mut self.attachments else { return Ok(()) };
+        attachments.before(self.machine)?;
+        self.hold();
+        Ok(())
+    }
+
+    /// The scan was whole: what is retained is that of now.
+    fn keep(&mut self, number: u64) {
+        self.summary.scans = number;
+        if self.retention.is_some() {
+            let clock = self.saved_clock();
+            self.retention.iter_mut().for_each(|it| it.offer(clock, self.machine.state()));
         }
     }
 
@@ -321,25 +359,24 @@ impl Runner<'_> {
         self.attachments.iter_mut().for_each(|it| it.end(ended));
     }
 
-    /// What comes after a scan: messages, also those before a fault, retained variables, the trace.
-    fn after(&mut self, subject: &Subject<'_>, number: u64, now: Time, ran: Result<(), Error>) -> Result<(), Error> {
-        self.tell(number)?;
-        ran?;
-        self.summary.scans = number;
-        if self.retention.is_some() {
-            let clock = self.saved_clock();
-            self.retention.iter_mut().for_each(|it| it.offer(clock, self.machine.state()));
+    /// The programs of a scan: on the virtual clock all that are due, in real time one, of which it is seen when it began and ended.
+    fn programs(&mut self, scan: &mut Scan) -> Result<(), Error> {
+        match scan.programs {
+            Programs::One(program) => {
+                scan.time = self.now();
+                let ran = self.forced(program, scan.number, scan.time);
+                scan.ended = self.now();
+                ran
+            }
+            Programs::Due { placed } => {
+                if self.options.debugged {
+                    self.machine.scan_begins(scan.number, scan.time);
+                }
+                self.schedule.advance(scan.time, placed);
+                (0..self.schedule.due().len())
+                    .try_for_each(|at| self.forced(self.schedule.due()[at], scan.number, scan.time))
+            }
         }
-        self.record(subject, now)
-    }
-
-    /// One scan of each program that is due.
-    fn programs(&mut self, number: u64, now: Time, placed: bool) -> Result<(), Error> {
-        self.schedule.advance(now, placed);
-        for at in 0..self.schedule.due().len() {
-            self.forced(self.schedule.due()[at], number, now)?;
-        }
-        Ok(())
     }
 
     /// What others than the program see of a forced variable is its value, and so does the program at first.
@@ -502,6 +539,8 @@ impl Runner<'_> {
         match &mut self.out.trace {
             Some(trace) => trace.finish(subject),
             None if self.options.quiet || self.options.json || self.options.trace.is_some() => Ok(()),
+            // It has not begun: an error says why.
+            None if !self.has_begun => Ok(()),
             None => {
                 let mut text = Vec::new();
                 let printed = self.out.table.print(subject, &mut text);

@@ -5,6 +5,7 @@ mod emitted;
 mod gpio;
 mod layout;
 mod modbus;
+mod safe;
 mod serial;
 mod shared_memory;
 

@@ -43,6 +43,7 @@ pub(crate) fn assemble<'s>(
     let slots = 0..declarations.pous.len();
     declarations.program.classes = slots.filter_map(|slot| declarations.class(slot, &held)).collect();
     declarations.check_named_programs(files);
+    declarations.program.implementers = declarations.numbered_implementers();
     configuration::instances(declarations, files);
     declarations.set_instance_paths();
     if is_last {

@@ -656,6 +656,7 @@ pub(crate) fn empty_program(files: Vec<SourceFile>) -> Program {
         remotes: Vec::new(),
         arrays: Vec::new(),
         interfaces: Vec::new(),
+        implementers: Vec::new(),
         references: Vec::new(),
         structs: Vec::new(),
         globals: StructId(0),

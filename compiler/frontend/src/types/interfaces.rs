@@ -272,4 +272,19 @@ impl Declarations<'_> {
         }
         number.min(MAX_NUMBERS)
     }
+
+    /// Of each INTERFACE, the classes that have a number, and their states.
+    pub fn numbered_implementers(&mut self) -> Vec<Vec<(u64, StructId)>> {
+        self.table.interfaces.slots.clone().into_iter().map(|it| self.numbered(it)).collect()
+    }
+
+    fn numbered(&mut self, interface: usize) -> Vec<(u64, StructId)> {
+        let mut all = Vec::new();
+        for class in self.implementers(interface).iter() {
+            let state = self.signature(*class).and_then(|it| it.state);
+            all.extend(state.and_then(|it| Some((*self.table.interfaces.numbers.get(&it)?, it))));
+        }
+        all.sort_unstable();
+        all
+    }
 }

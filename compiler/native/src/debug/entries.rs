@@ -18,6 +18,8 @@ pub(crate) struct Entries<'a> {
     pub(crate) types: FxHashMap<Type, UnitEntryId>,
     /// Those of pointers, by what they lead to.
     pub(crate) pointers: FxHashMap<Type, UnitEntryId>,
+    /// What variables of INTERFACEs are shown as.
+    pub(crate) leads: FxHashMap<Type, UnitEntryId>,
     /// The word that leads to the state.
     pub(crate) state: Address,
     /// The code that is described.
@@ -32,6 +34,7 @@ impl<'a> Entries<'a> {
             dwarf: DwarfUnit::new(ENCODING),
             types: FxHashMap::default(),
             pointers: FxHashMap::default(),
+            leads: FxHashMap::default(),
             state,
             ranges: Vec::new(),
         }

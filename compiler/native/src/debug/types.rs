@@ -2,17 +2,18 @@
 
 use super::entries::{Entries, is_declared};
 use gimli::constants::{
-    DW_AT_bit_size, DW_AT_byte_size, DW_AT_const_value, DW_AT_data_bit_offset, DW_AT_data_member_location,
-    DW_AT_decimal_scale, DW_AT_encoding, DW_AT_lower_bound, DW_AT_upper_bound, DW_ATE_boolean, DW_ATE_float,
-    DW_ATE_signed, DW_ATE_signed_fixed, DW_ATE_unsigned, DW_ATE_unsigned_char, DW_ATE_unsigned_fixed,
-    DW_TAG_array_type, DW_TAG_base_type, DW_TAG_enumeration_type, DW_TAG_enumerator, DW_TAG_member,
-    DW_TAG_pointer_type, DW_TAG_structure_type, DW_TAG_subrange_type, DW_TAG_typedef, DwAte,
+    DW_AT_bit_size, DW_AT_byte_size, DW_AT_byte_stride, DW_AT_const_value, DW_AT_data_bit_offset,
+    DW_AT_data_member_location, DW_AT_decimal_scale, DW_AT_encoding, DW_AT_lower_bound, DW_AT_upper_bound,
+    DW_ATE_boolean, DW_ATE_float, DW_ATE_signed, DW_ATE_signed_fixed, DW_ATE_unsigned, DW_ATE_unsigned_char,
+    DW_ATE_unsigned_fixed, DW_TAG_array_type, DW_TAG_base_type, DW_TAG_enumeration_type, DW_TAG_enumerator,
+    DW_TAG_member, DW_TAG_pointer_type, DW_TAG_structure_type, DW_TAG_subrange_type, DW_TAG_typedef, DwAte,
 };
 use gimli::write::{AttributeValue, UnitEntryId};
 use staunch_ir::{
-    ArrayId, BlockId, BoundsId, Elementary, EnumId, FieldId, Overlay, Repr, StringType, StructId, Type, Value,
+    ArrayId, BlockId, BoundsId, Elementary, EnumId, FieldId, Overlay, RefKind, Repr, StringType, StructId, Type, Value,
 };
 use staunch_runtime::Class;
+use staunch_runtime::reference::CLASS;
 
 /// A unit of times is so many powers of ten of a second.
 const NANO: i64 = -9;
@@ -31,7 +32,7 @@ impl Entries<'_> {
             Type::Array(it) => self.array(it),
             Type::Struct(it) => self.structure(it),
             Type::Block(it) => self.block(it),
-            Type::Reference(_) => self.base(&self.program.type_name(ty), DW_ATE_unsigned, 8),
+            Type::Reference(id) => self.reference(ty, self.program.references[id.index()].kind),
         };
         self.types.insert(ty, id);
         self.name_type(ty, id);
@@ -64,6 +65,46 @@ impl Entries<'_> {
         self.set(id, DW_AT_byte_size, AttributeValue::Udata(8));
         self.set_type(id, target);
         self.pointers.insert(ty, id);
+        id
+    }
+
+    /// A reference that is a part of something: the address in it, and of an INTERFACE the class.
+    fn reference(&mut self, ty: Type, kind: RefKind) -> UnitEntryId {
+        let id = self.add_named(self.root(), DW_TAG_structure_type, &self.program.type_name(ty));
+        self.set(id, DW_AT_byte_size, AttributeValue::Udata(8));
+        let address = self.type_of(Type::Elementary(Elementary::Udint));
+        self.member(id, "at", address, 0);
+        if let RefKind::Interface(interface) = kind {
+            let classes = self.program.implementers.get(interface.index()).cloned().unwrap_or_default();
+            let ty = self.classes(&classes);
+            let class = self.add_named(id, DW_TAG_member, "is");
+            self.set_type(class, ty);
+            self.set(class, DW_AT_bit_size, AttributeValue::Udata(u64::from(u64::BITS - CLASS)));
+            self.set(class, DW_AT_data_bit_offset, AttributeValue::Udata(CLASS.into()));
+        }
+        id
+    }
+
+    /// The numbers of classes in references, by the names of the classes.
+    fn classes(&mut self, classes: &[(u64, StructId)]) -> UnitEntryId {
+        let of = self.type_of(Type::Elementary(Elementary::Ulint));
+        let id = self.add(self.root(), DW_TAG_enumeration_type);
+        self.set(id, DW_AT_byte_size, AttributeValue::Udata(8));
+        self.set_type(id, of);
+        let none = self.add_named(id, DW_TAG_enumerator, "none");
+        self.set(none, DW_AT_const_value, AttributeValue::Udata(0));
+        for (number, state) in classes {
+            let name = self.add_named(id, DW_TAG_enumerator, &self.program.structure(*state).name);
+            self.set(name, DW_AT_const_value, AttributeValue::Udata(*number));
+        }
+        id
+    }
+
+    /// A variable of a type at each address up to `last`.
+    pub(crate) fn at_each_byte(&mut self, ty: Type, last: u64) -> UnitEntryId {
+        let element = self.type_of(ty);
+        let id = self.sequence(element, (0, i64::try_from(last).unwrap_or(i64::MAX)));
+        self.set(id, DW_AT_byte_stride, AttributeValue::Udata(1));
         id
     }
 

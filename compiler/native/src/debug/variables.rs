@@ -3,18 +3,25 @@
 use super::entries::{Entries, is_declared};
 use super::notes::Homes;
 use gimli::constants::{
-    DW_AT_artificial, DW_AT_byte_size, DW_AT_location, DW_OP_and, DW_OP_dup, DW_OP_minus, DW_OP_plus, DW_OP_shr,
-    DW_OP_stack_value, DW_TAG_formal_parameter, DW_TAG_structure_type, DW_TAG_variable, DwTag,
+    DW_AT_artificial, DW_AT_byte_size, DW_AT_location, DW_OP_and, DW_OP_dup, DW_OP_eq, DW_OP_minus, DW_OP_mul,
+    DW_OP_plus, DW_OP_shr, DW_OP_stack_value, DW_OP_swap, DW_TAG_formal_parameter, DW_TAG_structure_type,
+    DW_TAG_variable, DwTag,
 };
 use gimli::write::{Address, AttributeValue, Expression, UnitEntryId};
 use staunch_ir::layout::Layout;
 use staunch_ir::loops::constant_position;
 use staunch_ir::{
-    FieldId, HELD_PROGRAM, LocalId, Mode, Place, Projection, RefKind, RefType, Root, Routine, RoutineKind, Type,
-    Variable, View, visit,
+    FieldId, HELD_PROGRAM, InterfaceId, LocalId, Mode, Place, Projection, RefKind, RefType, Root, Routine, RoutineKind,
+    StructId, Type, Variable, View, visit,
 };
-use staunch_runtime::reference::ORIGIN;
+use staunch_runtime::reference::{CLASS, ORIGIN};
 use std::collections::{BTreeMap, BTreeSet};
+
+/// Bytes of a pointer of the machine.
+const POINTER: u64 = 8;
+
+/// After the name of a type: the array that references are indices of. No identifier of Structured Text has two underscores.
+const BY_ADDRESS: &str = "__at";
 
 /// Where the storage begins that places of one root are in.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +62,7 @@ impl Entries<'_> {
         for alias in &program.aliases {
             self.variable(self.root(), DW_TAG_variable, alias, None);
         }
+        self.by_address();
         let mut lists = Listed::default();
         for (name, path) in &program.global_paths {
             if let Some(place) = places.get(name.as_str()) {
@@ -65,6 +73,26 @@ impl Entries<'_> {
             let ty = self.list(name, list);
             let start = list.extent(self.layout).0;
             self.located(self.root(), DW_TAG_variable, (name, ty), Base::State.at(start, self));
+        }
+    }
+
+    /// For each type that references lead to, all of the state as an array of that type: what a reference in a structure has is an index.
+    fn by_address(&mut self) {
+        let program = self.program;
+        let is_named = |it: &&RefType| !matches!(it.kind, RefKind::Interface(_));
+        let mut targets: Vec<Type> = program.references.iter().filter(is_named).map(|it| it.target).collect();
+        targets.extend(program.implementers.iter().flatten().map(|it| Type::Struct(it.1)));
+        let mut seen = BTreeSet::new();
+        for target in targets {
+            let name = program.type_name(target);
+            if is_declared(&name) && seen.insert(name.to_ascii_uppercase()) {
+                let last = self.layout.machine.size + u64::from(ORIGIN);
+                let ty = self.at_each_byte(target, last);
+                let mut location = Base::State.at(0, self);
+                location.op_constu(ORIGIN.into());
+                location.op(DW_OP_minus);
+                self.located(self.root(), DW_TAG_variable, (&format!("{name}{BY_ADDRESS}"), ty), location);
+            }
         }
     }
 
@@ -194,9 +222,37 @@ impl Entries<'_> {
         let (ty, location) = match kind {
             RefKind::ReferenceTo => (self.type_of(target), led_to(at, self.state)),
             RefKind::RefTo | RefKind::PointerTo => (self.pointer_to(target), pointer(at, self.state)),
-            RefKind::Interface(_) => (self.type_of(ty), at),
+            RefKind::Interface(interface) => match self.leading(interface) {
+                Some(classes) => (self.one_of(ty, &classes), instances(&classes, (base, offset), self)),
+                None => (self.type_of(ty), at),
+            },
         };
         self.located(parent, tag, (name, ty), location);
+    }
+
+    /// The classes that a variable of an INTERFACE may lead to, unless there are so many that nobody would read them.
+    fn leading(&self, interface: InterfaceId) -> Option<Vec<(u64, StructId)>> {
+        const MOST: usize = 32;
+        self.program.implementers.get(interface.index()).filter(|it| (1..=MOST).contains(&it.len())).cloned()
+    }
+
+    /// What a variable of an INTERFACE is shown as: a pointer for each class, of which one leads somewhere.
+    fn one_of(&mut self, ty: Type, classes: &[(u64, StructId)]) -> UnitEntryId {
+        if let Some(known) = self.leads.get(&ty) {
+            return *known;
+        }
+        let name = self.program.type_name(ty);
+        let id = self.add_named(self.root(), DW_TAG_structure_type, &name);
+        self.leads.insert(ty, id);
+        let mut size = 0;
+        for (_, state) in classes {
+            let name = self.program.structure(*state).name.clone();
+            let pointer = self.pointer_to(Type::Struct(*state));
+            self.member(id, &name, pointer, size);
+            size += POINTER;
+        }
+        self.set(id, DW_AT_byte_size, AttributeValue::Udata(size));
+        id
     }
 
     /// Where a variable is, from where its root is.
@@ -266,6 +322,26 @@ fn pointer(mut at: Expression, state: Address) -> Expression {
     at
 }
 
+/// A pointer for each class, in the place of a reference: null for those whose number it does not have.
+fn instances(classes: &[(u64, StructId)], (base, offset): (Base, u64), entries: &Entries<'_>) -> Expression {
+    let mut all = Expression::new();
+    for (number, _) in classes {
+        base.begin(offset, entries, &mut all);
+        all.op_deref();
+        all.op(DW_OP_dup);
+        followed(&mut all, entries.state);
+        all.op(DW_OP_swap);
+        all.op_constu(CLASS.into());
+        all.op(DW_OP_shr);
+        all.op_constu(*number);
+        all.op(DW_OP_eq);
+        all.op(DW_OP_mul);
+        all.op(DW_OP_stack_value);
+        all.op_piece(POINTER);
+    }
+    all
+}
+
 /// The address in a reference is that in the state.
 fn followed(at: &mut Expression, state: Address) {
     at.op_constu(u64::from(u32::MAX));
@@ -280,6 +356,11 @@ fn followed(at: &mut Expression, state: Address) {
 impl Base {
     fn at(self, offset: u64, entries: &Entries<'_>) -> Expression {
         let mut it = Expression::new();
+        self.begin(offset, entries, &mut it);
+        it
+    }
+
+    fn begin(self, offset: u64, entries: &Entries<'_>, it: &mut Expression) {
         match self {
             Self::State => {
                 it.op_addr(entries.state);
@@ -294,7 +375,6 @@ impl Base {
         if offset > 0 {
             it.op_plus_uconst(offset);
         }
-        it
     }
 
     /// The value of a single bit.

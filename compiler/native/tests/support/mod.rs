@@ -87,6 +87,7 @@ pub fn program(arrays: Vec<Array>, mut structs: Vec<Struct>, routines: Vec<Routi
         remotes: Vec::new(),
         arrays,
         interfaces: Vec::new(),
+        implementers: Vec::new(),
         references: Vec::new(),
         globals: StructId::next(structs.len() - 1),
         aliases: Vec::new(),

@@ -122,8 +122,10 @@ impl Attachment for Client {
 
     /// Outputs at their safe values are written as the thread's last act.
     fn end(&mut self, _: Ended) {
-        if self.at_end == AtEnd::Zero && self.shared.exchange.is_shown() {
-            self.shared.exchange.show(self.turn, |_| 0);
+        if self.shared.exchange.is_shown() {
+            let mut last = vec![0; self.points.len()];
+            self.shared.exchange.see_newer(0, |shown| last.clone_from(&shown.values));
+            self.shared.exchange.show(self.turn, |at| self.points[at].at_end(self.at_end, last[at]));
         }
         self.shared.is_over.store(true, Ordering::Release);
         let _ = self.ended.recv_timeout(self.patience);

@@ -3,10 +3,13 @@
 
 use super::image::{Image, State};
 use super::options::{AtEnd, Connection};
+use super::points::Point;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-static IMAGES: [OnceLock<(Image, AtEnd)>; Connection::MOST] = [const { OnceLock::new() }; Connection::MOST];
+/// An image, and what its outputs are at the end.
+type Kept = (Image, AtEnd, &'static [Point]);
+static IMAGES: [OnceLock<Kept>; Connection::MOST] = [const { OnceLock::new() }; Connection::MOST];
 /// Groups of lines with the same settings.
 const MOST_LINES: usize = 64;
 static LINES: [OnceLock<Guarded>; MOST_LINES] = [const { OnceLock::new() }; MOST_LINES];
@@ -32,17 +35,15 @@ pub(super) fn add_lines(lines: Guarded) -> bool {
 static COUNT: AtomicUsize = AtomicUsize::new(0);
 
 /// From now on, this image is cared for.
-pub(super) fn add(image: Image, at_end: AtEnd) {
+pub(super) fn add(image: Image, at_end: AtEnd, safe: &'static [Point]) {
     let place = IMAGES.get(COUNT.fetch_add(1, Ordering::Relaxed));
-    place.map(|it| it.set((image, at_end)));
+    place.map(|it| it.set((image, at_end, safe)));
 }
 
 /// The process is about to end in the middle of a scan.
 pub(crate) fn stop() {
-    for (image, at_end) in IMAGES.iter().filter_map(OnceLock::get) {
-        if *at_end == AtEnd::Zero {
-            image.zero_outputs();
-        }
+    for (image, at_end, safe) in IMAGES.iter().filter_map(OnceLock::get) {
+        image.end_outputs(*at_end, safe);
         image.tell(State::Faulted);
     }
     for Guarded { set, descriptor, bits, mask } in LINES.iter().filter_map(OnceLock::get) {

@@ -14,7 +14,7 @@ mod chip;
 use super::attachment::{Attachment, Ended};
 use super::exchange::Exchange;
 use super::options::AtEnd;
-use super::points::{Area, Point, Points};
+use super::points::{Point, Points};
 use crate::map::Map;
 use crate::{Error, Machine};
 pub use group::check_pins;
@@ -96,10 +96,9 @@ impl Attachment for Gpio {
     /// Outputs at their safe values are written as the thread's last act. Before the first scan, lines have them already.
     fn end(&mut self, _: Ended) {
         if self.shared.exchange.is_shown() {
-            self.shared.exchange.show(self.request, |at| match (self.safe[at], self.at_end) {
-                (Some(safe), _) => u64::from(safe),
-                (None, AtEnd::Zero) if self.points[at].area == Area::Output => 0,
-                (None, AtEnd::Zero | AtEnd::Hold) => self.last[at],
+            self.shared.exchange.show(self.request, |at| match self.safe[at] {
+                Some(safe) => u64::from(safe),
+                None => self.points[at].at_end(self.at_end, self.last[at]),
             });
         }
         self.shared.end();

@@ -6,6 +6,7 @@
 //! the middle delays nothing.
 
 use super::mapping::Mapping;
+use super::options::AtEnd;
 use super::points::{Area, Point};
 use staunch_runtime::firmware::Place;
 use std::io;
@@ -118,13 +119,18 @@ impl Image {
         scans.store(scans.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
     }
 
-    /// All outputs are 0, also those of no variable. Nothing but atomic stores: a handler of a signal may call it.
-    pub fn zero_outputs(self) {
+    /// Outputs are as at the end of a run; with [`AtEnd::Zero`] also those of no variable are 0. Nothing but atomic stores: a handler of a
+    /// signal may call it.
+    pub fn end_outputs(self, at_end: AtEnd, safe: &[Point]) {
         const FIRST: usize = HEADER + AREA;
+        if at_end == AtEnd::Hold && safe.is_empty() {
+            return;
+        }
         self.publish(|| {
-            for at in (FIRST..FIRST + AREA).step_by(8) {
-                self.0.long(at).store(0, Ordering::Relaxed);
+            if at_end == AtEnd::Zero {
+                (FIRST..FIRST + AREA).step_by(8).for_each(|at| self.0.long(at).store(0, Ordering::Relaxed));
             }
+            safe.iter().for_each(|it| self.store(it, it.safe.unwrap_or(0)));
         });
     }
 }

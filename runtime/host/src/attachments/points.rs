@@ -1,5 +1,6 @@
 //! The variables at addresses, each as a place outside and a place in the state.
 
+use super::options::AtEnd;
 use crate::Machine;
 use crate::map::{Map, Type, Variable};
 use staunch_runtime::Elementary;
@@ -26,6 +27,8 @@ pub(super) struct Point {
     bit: Option<u8>,
     /// It shares the bits of another variable, whose point there is as well.
     pub view: bool,
+    /// Of an output, what it is before the first scan and at the end, where that is stated.
+    pub safe: Option<u64>,
 }
 
 impl Point {
@@ -37,6 +40,15 @@ impl Point {
     /// The one bit of the byte there that it is, if it is one.
     pub fn bit(&self) -> Option<u8> {
         self.bit
+    }
+
+    /// What it is at the end of a run, after its `last` value.
+    pub fn at_end(&self, at_end: AtEnd, last: u64) -> u64 {
+        match (self.safe, at_end) {
+            (Some(safe), _) => safe,
+            (None, AtEnd::Zero) if self.area == Area::Output => 0,
+            (None, AtEnd::Zero | AtEnd::Hold) => last,
+        }
     }
 
     /// Its bits, the others being 0.
@@ -116,7 +128,7 @@ impl Points {
         };
         for (at, (ty, offset)) in values.into_iter().enumerate() {
             let bit = if let Type::Bit(number) = ty { Some(number) } else { None };
-            self.all.push(Point { area, width, number: first + at, offset, bit, view: variable.view });
+            self.all.push(Point { area, width, number: first + at, offset, bit, view: variable.view, safe: None });
             self.names.push(name.clone());
         }
     }

@@ -84,7 +84,7 @@ pub(super) struct Registers {
 impl Registers {
     /// Of points that have a [`place`].
     pub fn new(points: &[Point]) -> Self {
-        let tables = [Table::Coils, Table::Discrete, Table::Input, Table::Holding].map(|it| vec![0; it.size()]);
+        let mut tables = [Table::Coils, Table::Discrete, Table::Input, Table::Holding].map(|it| vec![0; it.size()]);
         let mut links = tables.each_ref().map(|it| vec![None; it.len()]);
         let mut places = Vec::new();
         for (at, point) in points.iter().enumerate() {
@@ -94,6 +94,8 @@ impl Registers {
                 // The high word comes first.
                 let shift = REGISTER_BITS * (count - 1 - number);
                 links[table as usize][first + number] = Some((at as u32, shift as u8));
+                // Before the first scan.
+                tables[table as usize][first + number] = (point.safe.unwrap_or(0) >> shift) as u16;
             }
             places.push((table, first, count));
         }

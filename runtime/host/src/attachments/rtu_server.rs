@@ -103,9 +103,7 @@ impl Attachment for RtuServer {
     }
 
     fn end(&mut self, _: Ended) {
-        if self.at_end == AtEnd::Zero {
-            self.served.show_zero(self.request);
-        }
+        self.served.show_end(self.request, self.at_end);
         self.served.end();
         let _ = self.ended.recv_timeout(PATIENCE);
         if !self.quiet {

@@ -1,8 +1,9 @@
 //! What a Modbus server of a program answers from, whatever carries the requests.
 
 use super::exchange::Exchange;
+use super::options::AtEnd;
 use super::pdu;
-use super::points::{Area, Point, Points};
+use super::points::{Point, Points};
 use super::registers::{Registers, place};
 use crate::Machine;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -38,11 +39,11 @@ impl Served {
         self.exchange.show(request, |at| self.points[at].read(state));
     }
 
-    /// Outputs are 0, and the rest is as the last scan left it.
-    pub fn show_zero(&self, request: u64) {
+    /// The run is over: outputs are safe, and the rest is as the last scan left it.
+    pub fn show_end(&self, request: u64, at_end: AtEnd) {
         let mut last = vec![0; self.points.len()];
         self.exchange.see_newer(0, |shown| last.clone_from(&shown.values));
-        self.exchange.show(request, |at| if self.points[at].area == Area::Output { 0 } else { last[at] });
+        self.exchange.show(request, |at| self.points[at].at_end(at_end, last[at]));
     }
 
     /// The run is over: threads that serve end.

@@ -98,9 +98,7 @@ impl Attachment for Modbus {
     }
 
     fn end(&mut self, _: Ended) {
-        if self.at_end == AtEnd::Zero {
-            self.shared.served.show_zero(self.request);
-        }
+        self.shared.served.show_end(self.request, self.at_end);
         self.shared.served.end();
         for client in self.shared.clients().drain(..) {
             let _ = client.stream.shutdown(Shutdown::Both);

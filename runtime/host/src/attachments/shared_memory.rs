@@ -15,6 +15,8 @@ use crate::{Error, Machine};
 pub(super) struct SharedMemory {
     image: Image,
     at_end: AtEnd,
+    /// Outputs whose safe values are stated.
+    safe: &'static [Point],
     inputs: Vec<Value>,
     outputs: Vec<Point>,
     memory: Vec<Value>,
@@ -39,12 +41,13 @@ impl SharedMemory {
         let inputs = of(Area::Input).filter(|it| !it.view);
         let value = |it: &Point| Value { point: *it, held: it.read(state), read: 0 };
         let (inputs, memory) = (inputs.map(value).collect(), of(Area::Memory).map(value).collect());
-        let new = Self { image, at_end, inputs, outputs: of(Area::Output).copied().collect(), memory };
-        if at_end == AtEnd::Zero {
-            image.zero_outputs();
-        }
+        let safe: Vec<Point> = of(Area::Output).filter(|it| it.safe.is_some()).copied().collect();
+        // A thread that ends the process has no time to ask whose they are.
+        let safe: &'static [Point] = safe.leak();
+        let new = Self { image, at_end, safe, inputs, outputs: of(Area::Output).copied().collect(), memory };
+        image.end_outputs(at_end, safe);
         image.publish(|| new.memory.iter().for_each(|it| image.store(&it.point, it.held)));
-        emergency::add(image, at_end);
+        emergency::add(image, at_end, safe);
         Ok(new)
     }
 }
@@ -83,9 +86,7 @@ impl Attachment for SharedMemory {
     }
 
     fn end(&mut self, ended: Ended) {
-        if self.at_end == AtEnd::Zero {
-            self.image.zero_outputs();
-        }
+        self.image.end_outputs(self.at_end, self.safe);
         self.image.tell(if ended == Ended::Fault { State::Faulted } else { State::Ended });
     }
 }

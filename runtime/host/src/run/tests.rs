@@ -3,7 +3,8 @@
 use super::*;
 use crate::allocations::allocated;
 use crate::attachments::{Connection, Io};
-use crate::fixture::{Garage, map};
+use crate::fixture::{BUTTON, Garage, map, map_with_button, offset_of};
+use crate::remote::{OnLoss, Remote, Server};
 use staunch_runtime::{Fault, Value};
 use std::path::Path;
 use std::path::PathBuf;
@@ -216,6 +217,25 @@ impl Machine for Watched {
     }
 }
 
+/// An address where nobody listens.
+fn free_address() -> String {
+    std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().to_string()
+}
+
+/// The run's own server, as one whose coil is read.
+fn asked(server: &str) -> Remote {
+    Remote {
+        name: "itself".to_owned(),
+        server: Server::Tcp(server.to_owned()),
+        unit: 1,
+        period: Duration::from_millis(1),
+        timeout: Duration::from_millis(500),
+        on_loss: OnLoss::Hold,
+        word_order: None,
+        variables: vec![("button".to_owned(), "coil 1".to_owned()), ("lamp".to_owned(), "coil 9".to_owned())],
+    }
+}
+
 /// Retained variables and the trace are written by threads of their own, figures are counted in place, the bytes of inputs and outputs
 /// are copied, and a stimulus writes bytes that it has: from the first scans on nothing allocates, and no memory is touched that was not before.
 #[test]
@@ -226,7 +246,9 @@ fn scans_in_real_time_neither_allocate_nor_wait_for_memory() {
     const FIRST: u64 = 20_000;
     let folder = folder("no-allocation");
     let shared = format!("staunch-allocations-{}", std::process::id());
-    let mut connections = vec![Connection::Modbus("127.0.0.1:0".to_owned())];
+    let (mut map, server) = (map_with_button(), free_address());
+    map.remotes.push(asked(&server));
+    let mut connections = vec![Connection::Modbus(server)];
     if cfg!(target_os = "linux") {
         connections.push(Connection::SharedMemory(shared.clone()));
     }
@@ -248,7 +270,7 @@ fn scans_in_real_time_neither_allocate_nor_wait_for_memory() {
     };
     let machine = Changing([0; 128]);
     let mut watched = Watched { machine, scan: 0, range: [FIRST, FIRST + SCANS], seen: [(0, None); 2] };
-    let ran = run(&mut watched, &map(), &options).unwrap();
+    let ran = run(&mut watched, &map, &options).unwrap();
     assert_eq!(ran.scans, FIRST + SCANS);
     let [first, last] = watched.seen;
     assert_eq!(last.0 - first.0, 0, "allocations");
@@ -256,4 +278,81 @@ fn scans_in_real_time_neither_allocate_nor_wait_for_memory() {
         assert_eq!(last - first, 0, "page faults");
     }
     let _ = std::fs::remove_file(format!("/dev/shm/{shared}"));
+}
+
+/// What a machine is told, in the order in which it comes.
+#[derive(Debug)]
+struct Told {
+    garage: Garage,
+    all: Vec<String>,
+}
+
+impl Machine for Told {
+    fn state(&self) -> &[u8] {
+        self.garage.state()
+    }
+
+    fn write(&mut self, offset: usize, bytes: &[u8]) {
+        let known =
+            [("button", BUTTON), ("up", offset_of("up")), ("level", offset_of("level")), ("total", offset_of("total"))];
+        let name = known.into_iter().find(|it| it.1 == offset).map(|it| it.0);
+        self.all.push(format!("{} := {}", name.unwrap_or("?"), bytes[0]));
+        self.garage.write(offset, bytes);
+    }
+
+    fn init(&mut self) {
+        self.garage.init();
+    }
+
+    fn scan(&mut self, instance: usize, cx: &Context) -> Result<(), Fault> {
+        self.all.push("scan".to_owned());
+        self.garage.scan(instance, cx)
+    }
+}
+
+/// The stimulus has the word over the world outside, and what is forced over both and over the program, for all who look at the state later.
+#[cfg(target_os = "linux")]
+#[test]
+#[cfg_attr(miri, ignore = "it runs in real time")]
+fn what_is_around_a_scan_is_in_order() {
+    assert_eq!(AROUND.iter().position(|it| *it == Step::Programs), Some(2));
+    let folder = folder("order");
+    let shared = format!("staunch-order-{}", std::process::id());
+    let image = PathBuf::from(format!("/dev/shm/{shared}"));
+    let stimulus = folder.join("stimulus.csv");
+    std::fs::write(&stimulus, "scan,level,button,up\n1,3,,\n2,,TRUE,TRUE\n3,5,,\n").unwrap();
+    let trace = folder.join("trace.csv");
+    let options = || Options {
+        realtime: true,
+        quiet: true,
+        scans: Some(3),
+        stimulus: Some(stimulus.clone()),
+        forces: vec!["total=7".to_owned()],
+        retain: Some(folder.join("retained")),
+        trace: Some(trace.clone()),
+        vars: Some("level,button,total".to_owned()),
+        io: Io { connections: vec![Connection::SharedMemory(shared.clone())], ..Io::default() },
+        ..Options::default()
+    };
+    let mut told = Told { garage: Garage::new(), all: Vec::new() };
+    run(&mut told, &map_with_button(), &options()).unwrap();
+    let texts: Vec<&str> = told.all.iter().map(String::as_str).collect();
+    let scans: Vec<&[&str]> = texts.split(|it| *it == "scan").collect();
+    // The input is the world's at first, then the stimulus's: it is written again after what is read, which is FALSE.
+    assert_eq!(scans[0], ["level := 3", "total := 7"]);
+    assert_eq!(
+        scans[1],
+        ["total := 7", "button := 1", "up := 1", "button := 0", "button := 1", "up := 1", "total := 7"]
+    );
+    assert_eq!(scans[2], ["total := 7", "level := 5", "button := 0", "button := 1", "up := 1", "total := 7"]);
+    assert_eq!(scans[3], ["total := 7"]);
+    let rows = std::fs::read_to_string(&trace).unwrap();
+    let ends: Vec<&str> = rows.lines().skip(1).map(|it| it.splitn(3, ',').nth(2).unwrap()).collect();
+    assert_eq!(ends, ["3,FALSE,7", "3,TRUE,7", "5,TRUE,7"]);
+    // The program has counted an edge in `total`, and what is kept is the forced value.
+    let mut next = Garage::new();
+    let once = Options { scans: Some(0), retain: Some(folder.join("retained")), quiet: true, ..Options::default() };
+    run(&mut next, &map_with_button(), &once).unwrap();
+    assert_eq!(next.read("total"), Value::I32(7));
+    let _ = std::fs::remove_file(image);
 }

@@ -206,6 +206,9 @@ fn placed(
             return Err("one bit of a register cannot be written alone: write all of it, from a %QW".to_owned());
         }
         (Width::Bit, false, Some(_)) => 1,
+        (Width::Bit, false, None) if is_output => {
+            return Err("it is a bit, and a register has 16: write it to a coil, or all 16 from a %QW".to_owned());
+        }
         (Width::Bit, false, None) => {
             return Err("it is a bit, and a register has 16: name one, as in \"input-register 3.0\"".to_owned());
         }

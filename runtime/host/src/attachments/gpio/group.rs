@@ -3,6 +3,7 @@
 use crate::attachments::client::{input_places, values};
 use crate::attachments::options::AtEnd;
 use crate::attachments::points::{Area, Point, Points, Width};
+use crate::attachments::safe::points_of;
 use crate::map::Map;
 use crate::pin::{Bias, Pin, PinLine};
 use crate::remote::Remote;
@@ -54,7 +55,7 @@ pub(super) struct Planned {
 
 /// What is wrong with the lines of a program: the number of one, from 0, and why.
 pub fn check_pins(pins: &[Pin], remotes: &[Remote], map: &Map) -> Result<(), (usize, String)> {
-    let points = Points::of(map);
+    let points = points_of(map);
     let planned = plan(pins, map, &points)?;
     let others: HashSet<_> = remotes.iter().flat_map(|it| input_places(it, map, &points)).collect();
     let is_other = |it: &Point| it.area == Area::Input && others.contains(&(it.offset(), it.bit()));
@@ -69,7 +70,8 @@ pub(super) fn plan(pins: &[Pin], map: &Map, points: &Points) -> Result<Planned, 
     let mut planned = Planned { points: Vec::new(), safe: Vec::new(), groups: Vec::new() };
     for (number, pin) in pins.iter().enumerate() {
         let point = checked(pin, &pins[..number], map, points, &planned.points).map_err(|text| (number, text))?;
-        let place = Place { line: pin.line.clone(), point: number, initial: pin.safe.unwrap_or(false) };
+        let safe = pin.safe.or(point.safe.map(|it| it != 0));
+        let place = Place { line: pin.line.clone(), point: number, initial: safe.unwrap_or(false) };
         let is_output = point.area == Area::Output;
         let group = planned.groups.iter_mut().find(|it| {
             it.chip == pin.chip
@@ -89,7 +91,7 @@ pub(super) fn plan(pins: &[Pin], map: &Map, points: &Points) -> Result<Planned, 
             }),
         }
         planned.points.push(point);
-        planned.safe.push(pin.safe);
+        planned.safe.push(safe);
     }
     Ok(planned)
 }
@@ -111,6 +113,9 @@ fn checked(pin: &Pin, before: &[Pin], map: &Map, points: &Points, others: &[Poin
     match point.area {
         Area::Input if pin.safe.is_some() => {
             Err("it is an input, and `safe` is for outputs: declare it at %QX, or remove `safe`".to_owned())
+        }
+        Area::Output if pin.safe.is_some() && point.safe.is_some() => {
+            Err("it has a value in `[safe]`, too: remove one of both".to_owned())
         }
         Area::Output if pin.debounce.is_some() => {
             Err("it is an output, and `debounce` is for inputs: declare it at %IX, or remove `debounce`".to_owned())
