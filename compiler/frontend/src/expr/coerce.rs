@@ -250,7 +250,7 @@ impl<'s> Checker<'_, 's> {
     pub(crate) fn members(&self, ty: Type) -> Option<String> {
         let Type::Enum(id) = ty else { return None };
         let names = self.decl.program.enumeration(id).values.iter().map(|it| it.name.as_str());
-        Some(crate::diagnostic::wording::list(&names.take(4).collect::<Vec<_>>()))
+        Some(crate::diagnostic::wording::any_of(&names.take(4).collect::<Vec<_>>()))
     }
 
     pub(crate) fn instance_is_no_value(&mut self, expr: &Expr, message: String, span: Span) -> Option<Expr> {
@@ -277,7 +277,7 @@ impl<'s> Checker<'_, 's> {
         if !outputs.is_empty() && !text.contains(char::is_whitespace) {
             let names: Vec<_> = outputs.iter().map(|it| format!("{text}.{it}")).collect();
             let names: Vec<_> = names.iter().map(String::as_str).collect();
-            error = error.help(format!("read one of its outputs: {}", crate::diagnostic::wording::list(&names)));
+            error = error.help(format!("read one of its outputs: {}", crate::diagnostic::wording::any_of(&names)));
         }
         self.report(error);
         None
