@@ -37,7 +37,7 @@ fn a_case_as_one_file_is_the_same_program() {
     assert!(same > 800, "{same}");
 }
 
-/// `None` where there is no program.
+/// `None` if the case has no program.
 fn is_same(case: &Case) -> Option<Result<(), String>> {
     let (sources, compilation) = case.compile();
     let program = compilation.program?;

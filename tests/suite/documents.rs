@@ -37,6 +37,34 @@ fn each_table_in_documents_has_a_head() {
     assert!(tables > 50, "{tables}");
 }
 
+/// The most characters of a cell, as a reader sees it: without the targets of links.
+const CELL: usize = 220;
+
+#[test]
+fn cells_of_tables_are_short() {
+    let mut long = Vec::new();
+    for path in documents() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for (number, line) in text.lines().enumerate().filter(|(_, it)| it.starts_with('|')) {
+            let most = line.split(" | ").map(|it| without_targets(it).chars().count()).max();
+            if most > Some(CELL) {
+                long.push(format!("{}:{}: a cell has {} characters", path.display(), number + 1, most.unwrap_or(0)));
+            }
+        }
+    }
+    assert!(long.is_empty(), "at most {CELL}; make two rows:\n{}", long.join("\n"));
+}
+
+fn without_targets(cell: &str) -> String {
+    let mut shown = String::new();
+    let mut rest = cell;
+    while let Some((before, target)) = rest.split_once("](") {
+        shown += before;
+        rest = target.split_once(')').map_or("", |it| it.1);
+    }
+    shown + rest
+}
+
 fn documents() -> Vec<PathBuf> {
     let folders = ["docs", "docs/tutorials"].into_iter();
     let docs = folders.flat_map(|it| std::fs::read_dir(project().join(it)).expect("the folder exists"));

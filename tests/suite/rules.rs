@@ -15,7 +15,7 @@ fn table() -> String {
         let choices: Vec<_> = row.followed.iter().map(|it| it.0).collect();
         writeln!(text, "| {} | {} |", row.rule, choices.join(" | ")).unwrap();
     }
-    text.push_str("\n| rule | shown by |\n|---|---|\n");
+    text.push_str("\n| rule | in | shown by |\n|---|---|---|\n");
     for row in &rows {
         let mut shown: Vec<(&str, Vec<&str>)> = Vec::new();
         for (name, (_, evidence)) in names.iter().zip(row.followed) {
@@ -24,11 +24,13 @@ fn table() -> String {
                 None => shown.push((evidence, vec![name])),
             }
         }
-        let shown: Vec<_> = shown.iter().map(|(evidence, names)| format!("{}: {evidence}", names.join(" "))).collect();
-        writeln!(text, "| {} | {} |", row.rule, shown.join("; ")).unwrap();
+        for (at, (evidence, names)) in shown.iter().enumerate() {
+            let rule = if at == 0 { row.rule } else { "" };
+            writeln!(text, "| {rule} | {} | {} |", names.join(" "), evidence.replace('|', "\\|")).unwrap();
+        }
     }
     text.push_str(
-        "\nThese rules are known and not followed: a program that uses this may have another value on the system.\n",
+        "\nThese rules are known but not followed: a program that uses one of them may compute a different value on that system.\n",
     );
     text.push_str("\n| dialect | uses | there | shown by |\n|---|---|---|---|\n");
     for it in rules::NOT_FOLLOWED {
@@ -36,7 +38,7 @@ fn table() -> String {
         writeln!(text, "| `{dialect}` | {uses} | {} | {} |", it.what, it.evidence).unwrap();
     }
     text.push_str(
-        "\nWhere a vendor leaves a value open, or no page was found that has it, what happens here is a choice:\n",
+        "\nIf a vendor leaves a value open, or we found no page that documents it, Staunch makes a choice:\n",
     );
     text.push_str("\n| dialect | what | here | documented |\n|---|---|---|---|\n");
     for it in rules::EDGES {

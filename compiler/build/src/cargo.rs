@@ -1,4 +1,4 @@
-//! What a build script prints for cargo: lines on standard output.
+//! The output of a build script for cargo: lines on standard output.
 
 use std::path::Path;
 

@@ -1,11 +1,11 @@
-//! Which files a build reads. Cargo hears of every file and every folder that was searched.
+//! Which files a build reads. Every file and every folder that was searched is reported to cargo.
 
 use std::path::{Path, PathBuf};
 
 use crate::cargo::Instructions;
 use crate::{Failed, listing};
 
-/// The files that `paths` name, in order; a folder's in the order of their paths.
+/// The files that `paths` name, in order; those of a folder in the order of their paths.
 pub fn find(paths: &[PathBuf], cargo: &mut Instructions) -> Result<Vec<PathBuf>, Failed> {
     let mut found = Vec::new();
     for path in paths {
@@ -21,7 +21,7 @@ pub fn find(paths: &[PathBuf], cargo: &mut Instructions) -> Result<Vec<PathBuf>,
     Ok(found)
 }
 
-/// What a list leads to.
+/// The files that a list refers to.
 fn list(path: &Path, cargo: &mut Instructions, found: &mut Vec<PathBuf>) -> Result<(), Failed> {
     let (sources, lists) = listing::sources(path).map_err(|error| {
         cargo.error(&error);

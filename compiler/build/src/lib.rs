@@ -39,8 +39,8 @@ pub fn compile(path: impl Into<PathBuf>) {
 
 /// What to compile, and how. All sources together are one program.
 ///
-/// What is not said here is read from the `staunch.toml` of the first source's folder, or of the nearest
-/// one above it.
+/// Settings that are not made here are read from the `staunch.toml` in the folder of the first source, or in the nearest
+/// folder above it that has one.
 #[derive(Clone, Debug, Default)]
 pub struct Build {
     paths: Vec<PathBuf>,
@@ -59,7 +59,7 @@ pub struct Build {
     levels: Vec<(Level, String)>,
 }
 
-/// Why the output is missing.
+/// Why no output was written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Failed;
 
@@ -68,7 +68,7 @@ impl Build {
         Self::default()
     }
 
-    /// Adds a source; relative to the crate's folder.
+    /// Adds a source. The path is relative to the crate's folder.
     #[must_use]
     pub fn file(mut self, path: impl Into<PathBuf>) -> Self {
         self.paths.push(path.into());
@@ -82,22 +82,22 @@ impl Build {
         self.file(path)
     }
 
-    /// Adds a library: a file, a folder or a project of TwinCAT's that the program uses and that is not its own.
-    /// Declarations in it may be without bodies, as long as the program does not call them.
+    /// Adds a library: a file, a folder or a TwinCAT project that the program uses but that is not part of it.
+    /// POUs in it may be without bodies, as long as the program does not call them.
     #[must_use]
     pub fn library(mut self, path: impl Into<PathBuf>) -> Self {
         self.libraries.push(path.into());
         self
     }
 
-    /// Whose blocks a bare name means, in files that do not say it themselves.
+    /// The dialect of files that do not name one themselves; it decides which system's block a bare name means.
     #[must_use]
     pub fn dialect(mut self, dialect: Dialect) -> Self {
         self.dialect = Some(dialect);
         self
     }
 
-    /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge, as `openplc4-cd-edge = "rising"` says.
+    /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge, as with `openplc4-cd-edge = "rising"`.
     #[must_use]
     pub fn openplc4_cd_rises(mut self, rises: bool) -> Self {
         self.openplc4_cd_rises = Some(rises);
@@ -111,7 +111,7 @@ impl Build {
         self
     }
 
-    /// S7 loads its counters when LD becomes TRUE, and not while it is, as `s7-ld = "edge"` says.
+    /// S7 loads its counters when LD becomes TRUE, not as long as it is TRUE, as with `s7-ld = "edge"`.
     #[must_use]
     pub fn s7_ld_edge(mut self, is_edge: bool) -> Self {
         self.s7_ld_edge = Some(is_edge);
@@ -125,21 +125,21 @@ impl Build {
         self
     }
 
-    /// CODESYS: a number with a fraction is an LREAL also next to a REAL, as `codesys-real-literals = "lreal"` says.
+    /// CODESYS: a number with a fraction is an LREAL even next to a REAL, as with `codesys-real-literals = "lreal"`.
     #[must_use]
     pub fn codesys_lreal_literals(mut self, are_lreal: bool) -> Self {
         self.codesys_lreal_literals = Some(are_lreal);
         self
     }
 
-    /// In `codesys`, an integer becomes one of fewer bits by itself, with a lint.
+    /// In `codesys`, an integer is converted implicitly to one with fewer bits, with a lint.
     #[must_use]
     pub fn implicit_narrowing(mut self, narrows: bool) -> Self {
         self.implicit_narrowing = Some(narrows);
         self
     }
 
-    /// How many objects the pool of a type has that `__NEW` names and that declares none, as `[pool] default` says.
+    /// The number of objects in the pool of a type that `__NEW` names and that declares no pool, as with `[pool] default`.
     #[must_use]
     pub fn default_pool(mut self, objects: u32) -> Self {
         self.default_pool = Some(objects);
@@ -152,13 +152,13 @@ impl Build {
         self.level(Level::Allow, lint.into())
     }
 
-    /// Warns about a lint, which `staunch.toml` may allow.
+    /// Reports a lint as a warning, even if `staunch.toml` allows it.
     #[must_use]
     pub fn warn(self, lint: impl Into<String>) -> Self {
         self.level(Level::Warn, lint.into())
     }
 
-    /// Rejects a source for a lint; `warnings` means all.
+    /// Reports a lint as an error; `warnings` means all.
     #[must_use]
     pub fn deny(self, lint: impl Into<String>) -> Self {
         self.level(Level::Deny, lint.into())
@@ -190,7 +190,7 @@ impl Build {
         self
     }
 
-    /// Compiles to `$OUT_DIR/<name>.rs`, and prints for cargo when to do so again.
+    /// Compiles to `$OUT_DIR/<name>.rs`, and prints the files for cargo after whose changes it must compile again.
     ///
     /// Ends the build script with exit code 1 if the source is rejected or cannot be read.
     pub fn compile(&self) {
@@ -258,7 +258,7 @@ impl Build {
         Ok(found.unwrap_or_default())
     }
 
-    /// What this build says, before what its project file does.
+    /// The settings of this build, which take precedence over those of its project file.
     fn settings(&self, project: &Project, sources: &Sources) -> Result<(staunch_frontend::Options, Levels), String> {
         let options = staunch_frontend::Options {
             dialect: self
@@ -328,7 +328,7 @@ impl Build {
     }
 }
 
-/// A path as messages and the emitted Rust have it: the same on every machine.
+/// A path for messages and the emitted Rust, which is the same on every machine.
 fn shown(path: &Path) -> String {
     let crate_folder = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from);
     let inside = crate_folder.as_deref().and_then(|it| path.strip_prefix(it).ok());

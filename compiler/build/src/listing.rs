@@ -11,7 +11,7 @@ use std::slice::from_ref;
 
 /// A solution names projects, these name PLC projects, and these sources.
 const DEEPEST: usize = 4;
-/// So many folders above a PLC project its solution may be.
+/// The maximum number of folders from a PLC project up to its solution.
 const HIGHEST: usize = 8;
 
 /// Whether a folder's file is a source by its name.
@@ -53,8 +53,8 @@ pub fn project_in(folder: &Path) -> Option<PathBuf> {
     openplc::project_in(folder).or_else(|| beremiz::project_in(folder))
 }
 
-/// What a library or a program is called: as its file, project or folder is. Of OpenPLC Editor each project has a folder,
-/// whose name it has.
+/// The name of a library or a program: that of its file, project or folder. In OpenPLC Editor each project has a folder
+/// that gives it its name.
 pub fn name(path: &Path) -> String {
     let folder = path.parent().filter(|_| openplc::is_project(path));
     let name = match folder {
@@ -66,7 +66,7 @@ pub fn name(path: &Path) -> String {
     name.map_or_else(String::new, |it| it.to_string_lossy().into_owned())
 }
 
-/// The sources that a list leads to, and the lists on the way.
+/// The sources that a list refers to, directly or through other lists, and these lists.
 pub fn sources(path: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), String> {
     if openplc::is_project(path) {
         return Ok((openplc::files(path)?, vec![path.to_owned()]));
@@ -105,7 +105,7 @@ pub fn libraries(arguments: &[PathBuf], named: impl Iterator<Item = PathBuf>) ->
     all
 }
 
-/// What sources call a library by: a PLC project's title, where one of the references has it, else its name.
+/// The name by which sources refer to a library: the title of a PLC project if a reference uses it, otherwise its name.
 fn library_name(path: &Path, references: &[Reference]) -> String {
     let is_wanted = |title: &String| references.iter().any(|it| it.library.eq_ignore_ascii_case(title));
     title(path).filter(is_wanted).unwrap_or_else(|| name(path))
@@ -153,7 +153,7 @@ fn in_its_solution(project: &Path) -> Vec<PathBuf> {
     Vec::new()
 }
 
-/// The PLC projects that a solution leads to, without what cannot be read.
+/// The PLC projects of a solution, except those that cannot be read.
 fn listed_by(solution: &Path) -> Vec<PathBuf> {
     let Ok(listed) = std::fs::read(solution).map_err(|it| it.to_string()).and_then(|it| Source::listed(&it)) else {
         return Vec::new();
@@ -182,7 +182,7 @@ pub fn definitions(lists: &[PathBuf]) -> Vec<String> {
     projects.filter_map(|it| std::fs::read(it).ok()).flat_map(|it| Source::definitions(&it)).collect()
 }
 
-/// The PLC projects that a list leads to, each with what it lists.
+/// The PLC projects that a list refers to, each with its own list.
 fn plc_projects(path: &Path, depth: usize, lists: &mut Vec<PathBuf>) -> Result<Vec<(PathBuf, Vec<PathBuf>)>, String> {
     let fail = |it: &dyn std::fmt::Display| format!("{}: {it}", path.display());
     if depth > DEEPEST {
@@ -203,7 +203,7 @@ fn plc_projects(path: &Path, depth: usize, lists: &mut Vec<PathBuf>) -> Result<V
     Ok(projects)
 }
 
-/// A path as Windows writes it, from a folder; its `..` are taken out.
+/// A Windows path, relative to a folder; its `..` are resolved.
 fn resolved(folder: &Path, path: &str) -> PathBuf {
     let mut whole = folder.to_owned();
     for part in path.split(['\\', '/']) {
@@ -218,7 +218,7 @@ fn resolved(folder: &Path, path: &str) -> PathBuf {
     if whole.exists() { whole } else { in_any_case(&whole).unwrap_or(whole) }
 }
 
-/// The file that a path means where capitals and small letters are one, as on Windows.
+/// The file that a path means if upper and lower case are not distinguished, as on Windows.
 fn in_any_case(path: &Path) -> Option<PathBuf> {
     let mut found = PathBuf::new();
     for part in path.components() {

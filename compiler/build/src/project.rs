@@ -12,18 +12,18 @@ pub use modbus::Modbus;
 use staunch_frontend::{Dialect, Level, Levels, format, nearest};
 use std::path::{Path, PathBuf};
 
-/// What a project file says. Paths are relative to its folder.
+/// The contents of a project file. Paths are relative to its folder.
 #[derive(Clone, Debug, Default)]
 pub struct Project {
     pub folder: PathBuf,
     pub dialect: Option<String>,
     pub files: Vec<PathBuf>,
-    /// What the sources use that is not their own.
+    /// Libraries that the sources use.
     pub libraries: Vec<PathBuf>,
     pub program: Option<String>,
     pub cycle: Option<String>,
     pub loop_budget: Option<u64>,
-    /// The most instructions that the scan of a task may run, and the most bytes of its stack: of native code.
+    /// The maximum number of instructions in a scan of a task, and the maximum number of bytes of its stack, in native code.
     pub max_scan_instructions: Option<u64>,
     pub max_stack: Option<u64>,
     pub ctu_stop_at_pv: bool,
@@ -35,7 +35,7 @@ pub struct Project {
     /// `codesys-real-literals = "lreal"`.
     pub codesys_lreal_literals: bool,
     pub implicit_narrowing: bool,
-    /// How many objects the pool of a type has that declares none, `[pool] default`.
+    /// The number of objects in the pool of a type that declares none, `[pool] default`.
     pub default_pool: Option<u32>,
     pub warn: Vec<String>,
     pub deny: Vec<String>,
@@ -72,7 +72,7 @@ impl Project {
         self.dialect.as_ref().map(named).transpose()
     }
 
-    /// What it says of lints.
+    /// Its levels of lints.
     pub fn levels(&self) -> Result<Levels, String> {
         let mut levels = Levels::default();
         for (level, names) in [(Level::Warn, &self.warn), (Level::Deny, &self.deny), (Level::Allow, &self.allow)] {
@@ -127,7 +127,7 @@ impl Project {
         format!("{}:{}", self.file(), before + line)
     }
 
-    /// A path of the file, as seen from `from`, with strokes as on every machine.
+    /// A path of the file, as seen from `from`, with `/` on every machine.
     pub fn seen_from(&self, from: &Path, path: &Path) -> PathBuf {
         relative(&self.folder.join(path), from)
     }
@@ -170,7 +170,7 @@ fn read(path: &Path) -> Result<Project, String> {
     Ok(project)
 }
 
-/// The line of a setting, or the first from there on that has a text in quotes, from 1.
+/// The line of a setting, or of the first line from there on that contains a text in quotes, counted from 1.
 fn line_of(text: &str, key: &str, value: Option<&str>) -> Option<usize> {
     let is_key = |line: &str| {
         let name = line.split_once('=').map_or(line, |it| it.0).trim();
@@ -278,7 +278,7 @@ fn flag(key: &str, value: &toml::Value) -> Result<bool, String> {
     value.as_bool().ok_or_else(|| format!("`{key}` must be true or false"))
 }
 
-/// One of the words that the option with this name takes.
+/// One of the words that the option with this name accepts.
 fn choice(key: &str, value: &toml::Value, words: &[&str]) -> Result<String, String> {
     let named = value.as_str().filter(|it| words.contains(it)).map(str::to_owned);
     let quoted = || words.iter().map(|it| format!("\"{it}\"")).collect::<Vec<_>>().join(", ");

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 #[command(name = "staunch", version = env!("STAUNCH_VERSION"), max_term_width = 100, arg_required_else_help = true)]
 #[command(after_help = "A FILE may be a folder (every .st and .iecst below it) or - (standard input).\n\
     Exit codes: 0 done; 1 the program was rejected; 2 wrong usage; 3 the program faulted while it ran;\n\
-    4 compare found no difference and rules none out; 101 an internal error.")]
+    4 compare found no difference, but one is still possible; 101 an internal error.")]
 pub struct Cli {
     #[command(subcommand)]
     pub command: Command,
@@ -33,17 +33,17 @@ pub enum Command {
     Test(Test),
     /// Measure the time of a scan
     Bench(Bench),
-    /// Show what a program takes of a machine: bytes of variables, code and stack
+    /// Show what resources a program needs: bytes of variables, code and stack
     Report(Report),
     /// Show what changes when a program moves to another system
     Compare(Compare),
-    /// Write what is read of any system's files as one file of Structured Text
+    /// Convert the files of any supported system to one file of Structured Text
     Convert(Convert),
-    /// Lay out sources: indentation, spaces, columns of declarations, the letters of keywords
+    /// Format sources: indentation, spacing, aligned declarations, the case of keywords
     Fmt(Fmt),
-    /// Answer an editor that speaks the language server protocol, on standard input and output
+    /// Run the language server for editors, on standard input and output
     Lsp(Lsp),
-    /// Print the long text of a diagnostic, or the list of all
+    /// Explain a diagnostic, or list all of them
     Explain(Explain),
     /// Print completions for a shell
     Completions(Completions),
@@ -160,10 +160,10 @@ pub enum Backend {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Opt {
-    /// As few instructions in a scan as can be
+    /// As few instructions in a scan as possible
     #[default]
     Speed,
-    /// As few bytes of code
+    /// As few bytes of code as possible
     Size,
 }
 
@@ -183,7 +183,7 @@ pub struct Build {
     /// The back end that compiles the program
     #[arg(long, value_enum, default_value_t = BuildBackend::Native)]
     pub backend: BuildBackend,
-    /// What compiled code is made for; speed without it
+    /// What to optimise compiled code for [default: speed]
     #[arg(long, value_enum)]
     pub opt: Option<Opt>,
     /// Debug information for gdb, and code that it can follow line by line; with `--emit obj`, `lib` or `exe`
@@ -221,7 +221,7 @@ pub struct Run {
     /// Time from scan to scan: 10ms, T#1s
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
-    /// Limit for the turns of all loops in one scan together [default: 10000000]
+    /// Limit for the loop turns (iterations) in one scan, all loops together [default: 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
     /// Inputs over time
@@ -242,7 +242,7 @@ pub struct Run {
     // In a doc comment `[1,2]` would be a link.
     #[arg(long, value_name = "NAMES", help = "The variables to show, in order: a,b.CV,m[1,2]")]
     pub vars: Option<String>,
-    /// Two or three numbers that a picture (`--trace OUT.svg`) shows in one lane: a,b; may be repeated
+    /// Two or three numeric variables that a picture (`--trace OUT.svg`) shows in one lane: a,b; may be repeated
     #[arg(long, value_name = "NAMES", requires = "trace")]
     pub overlay: Vec<String>,
     /// The back end that runs the program [default: native; interpret with --break]
@@ -253,11 +253,11 @@ pub struct Run {
     /// Keep retained variables in this file
     #[arg(long, value_name = "FILE")]
     pub retain: Option<PathBuf>,
-    /// With --realtime, the time until a change of retained variables is on disk: 500ms, or `scan` for after every
+    /// With --realtime, the longest time until a change of retained variables is on disk: 500ms, or `scan` for after every
     /// scan [default: 1s]
     #[arg(long, value_name = "TIME", requires = "retain", value_parser = staunch_host::parse_within)]
     pub retain_within: Option<i64>,
-    /// Sleep, so that each scan runs at its time
+    /// Run in real time: wait until each scan is due
     #[arg(long)]
     pub realtime: bool,
     #[command(flatten)]
@@ -277,10 +277,10 @@ pub struct Debug {
     /// Stop before the statement at this line, and show the variables; may be repeated
     #[arg(long = "break", value_name = "[FILE:]LINE", value_parser = Breakpoint::parse, conflicts_with = "realtime")]
     pub breakpoints: Vec<Breakpoint>,
-    /// With --break, stop only where this BOOL is TRUE: an expression as it could be written at that line
+    /// With --break, stop only when this BOOL is TRUE: any expression that could be written at that line
     #[arg(long, value_name = "EXPR", requires = "breakpoints")]
     pub when: Option<String>,
-    /// With --break, print so many stops without asking for commands, and end the run after the last of them; 0 for all
+    /// With --break, print this many stops without asking for commands, and end the run after the last of them; 0 for all
     /// stops [default: 1, unless commands can be read from a terminal]
     #[arg(long, value_name = "N", requires = "breakpoints")]
     pub stops: Option<u64>,
@@ -322,19 +322,19 @@ impl std::fmt::Display for Breakpoint {
 /// How a run in real time keeps its time.
 #[derive(Clone, Debug, Args)]
 pub struct Pacing {
-    /// With --realtime, run before all of a lower priority: SCHED_FIFO, 1 to 98, with all memory locked
+    /// With --realtime, run before all processes of lower priority: SCHED_FIFO, 1 to 98, with all memory locked
     #[arg(long, value_name = "N", requires = "realtime", value_parser = staunch_host::parse_priority)]
     pub priority: Option<u8>,
     /// With --realtime, run on this processor
     #[arg(long, value_name = "N", requires = "realtime")]
     pub cpu: Option<usize>,
-    /// With --realtime, what follows a scan that is too long [default: skip]
+    /// With --realtime, what to do after a scan that takes too long [default: skip]
     #[arg(long, value_name = "skip|catch-up|fault", requires = "realtime", value_parser = Overrun::parse)]
     pub overrun: Option<Overrun>,
-    /// With --realtime, end when no scan has ended for so long: 500ms
+    /// With --realtime, end the process if no scan has ended for this long: 500ms
     #[arg(long, value_name = "TIME", requires = "realtime", value_parser = staunch_host::parse_duration)]
     pub watchdog: Option<i64>,
-    /// With --realtime, show a watchdog of the machine that scans end: /dev/watchdog
+    /// With --realtime, reset this hardware watchdog as long as scans end: /dev/watchdog
     #[arg(long, value_name = "FILE", requires = "realtime")]
     pub watchdog_device: Option<PathBuf>,
 }
@@ -349,7 +349,7 @@ pub struct Test {
     /// Write the results in JUnit's format, for CI
     #[arg(long, value_name = "OUT.xml")]
     pub junit: Option<PathBuf>,
-    /// Limit for the turns of all loops of one test in a scan [default: 1000000000; interpreted 10000000]
+    /// Limit for the loop turns (iterations) of one test in a scan, all loops together [default: 1000000000; interpreted 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
     /// Limit for the scans of a TcUnit suite until its tests are finished [default: 10000]
@@ -398,13 +398,13 @@ pub struct Bench {
     /// Number of scans
     #[arg(long, value_name = "N")]
     pub scans: Option<u64>,
-    /// Inputs, repeated; without them every BOOL input toggles in each scan
+    /// A stimulus, which is repeated; without it every BOOL input toggles in each scan
     #[arg(long, value_name = "IN.csv")]
     pub stimulus: Option<PathBuf>,
-    /// Time from scan to scan on the program's clock
+    /// Time between two scans on the program's clock
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
-    /// Limit for the turns of all loops in one scan together [default: 10000000]
+    /// Limit for the loop turns (iterations) in one scan, all loops together [default: 10000000]
     #[arg(long, value_name = "N")]
     pub loop_budget: Option<u64>,
     /// The back end that runs the program
@@ -443,7 +443,7 @@ pub struct Report {
     /// The PROGRAM to report on, if the sources have several
     #[arg(long, value_name = "NAME")]
     pub program: Option<String>,
-    /// What compiled code is made for; speed without it
+    /// What to optimise compiled code for [default: speed]
     #[arg(long, value_enum)]
     pub opt: Option<Opt>,
 }
@@ -470,7 +470,7 @@ pub struct Compare {
     /// Number of scans with a stimulus
     #[arg(long, value_name = "N", requires = "stimulus")]
     pub scans: Option<u64>,
-    /// Time from scan to scan: 10ms, T#1s
+    /// Time between two scans: 10ms, T#1s
     #[arg(long, value_name = "TIME")]
     pub cycle: Option<String>,
     /// Compare only these variables: a,b.CV
@@ -482,18 +482,18 @@ pub struct Compare {
     /// Limit for the total number of scans of the search
     #[arg(long, value_name = "N", default_value_t = 8_000_000)]
     pub budget: u64,
-    /// Accepted findings, one a line: a counter, the trap and the reason, as `parts 2: nobody reads the
+    /// Accepted findings, one per line: a counter, the trap and the reason, such as `parts 2: nobody reads the
     /// count past 50`. An output that differs because of one needs its own line: `motor output: not wired`
     #[arg(long, value_name = "FILE", conflicts_with = "stimulus")]
     pub accept: Option<PathBuf>,
-    /// Assumptions about the inputs, one a line: `Target 1..500`, `not (Start and Stop)`, `Part for at least 3 scans`, `no run`. The
+    /// Assumptions about the inputs, one per line: `Target 1..500`, `not (Start and Stop)`, `Part for at least 3 scans`, `no run`. The
     /// verdict is valid only if they hold
     #[arg(long, value_name = "FILE")]
     pub assume: Option<PathBuf>,
     /// Write the inputs that show a difference as a stimulus file
     #[arg(long, value_name = "OUT.csv")]
     pub save_stimulus: Option<PathBuf>,
-    /// Write the program in the form that the other system accepts, as one file, with its dialect and pin names; on Logix also its counters
+    /// Write the program in the form that the other system accepts, as one file, with that system's dialect and pin names, and for Logix with its counters
     #[arg(long, value_name = "OUT.st", conflicts_with = "against")]
     pub write: Option<PathBuf>,
     /// Show every scan, not only those in which something happens; with a file, draw both systems there
@@ -569,7 +569,7 @@ pub struct Lsp {
 
 #[derive(Clone, Debug, Args)]
 pub struct Explain {
-    /// A diagnostic's code, as E0101; without one all are listed
+    /// A diagnostic's code, such as E0101; without one all are listed
     pub code: Option<String>,
 }
 
@@ -594,7 +594,7 @@ pub struct New {
 
 #[derive(Clone, Debug, Args)]
 pub struct Doctor {
-    /// Only this target, as aarch64 or aarch64-unknown-linux-gnu; may be repeated
+    /// Only this target, such as aarch64 or aarch64-unknown-linux-gnu; may be repeated
     #[arg(long, value_name = "TRIPLE")]
     pub target: Vec<String>,
 }

@@ -40,7 +40,7 @@ fn one(asked: &str) -> Result<u8, String> {
     let code = Code::named(asked).ok_or_else(|| match Code::meant(asked) {
         Some(meant) => format!("there is no diagnostic `{asked}`; did you mean `{}`?", meant.name()),
         None => format!(
-            "there is no diagnostic `{asked}`; a code is E for an error or W for a lint, and four digits, as E0101; \
+            "there is no diagnostic `{asked}`; a code is E for an error or W for a lint, and four digits, such as E0101; \
              `staunch explain` lists them"
         ),
     })?;

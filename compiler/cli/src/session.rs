@@ -425,8 +425,8 @@ impl Session {
             }
             None if program.instances.len() > 1 && !program.is_configured => {
                 return Err(format!(
-                    "the sources have several programs; choose one with --program: there {}",
-                    are(&names)
+                    "the sources have several programs; choose one with --program: {}",
+                    names.join(", ")
                 ));
             }
             None => {}

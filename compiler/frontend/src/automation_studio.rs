@@ -15,7 +15,7 @@ use crate::start_up::once;
 use crate::testing::tree::variables;
 use rustc_hash::FxHashMap;
 
-/// Functions that remember what they were given, each with the unit of the library that is told what that was.
+/// Functions that remember their last argument, each with the library unit that stores it.
 pub(crate) const EDGES: [(&str, &str); 3] = [("EDGEPOS", "__EDGEPOS"), ("EDGENEG", "__EDGENEG"), ("EDGE", "__EDGE")];
 
 const INIT: &str = "_INIT";
@@ -230,7 +230,7 @@ fn join_functions<'s>(files: &mut [File<'s>], paths: &[&'s str], is_known: &dyn 
     }
 }
 
-/// Whether two declarations without bodies are of one name and have the same parameters: RF_TRIG is in two libraries of Automation Studio's.
+/// Whether two declarations without bodies have the same name and parameters: two libraries of Automation Studio declare RF_TRIG.
 fn is_the_same(one: &Pou<'_>, other: &Pou<'_>) -> bool {
     let shown = |pou: &Pou<'_>| {
         let blocks: Vec<_> = pou.blocks.iter().filter(|it| it.kind != VarKind::Var).map(|it| it.kind).collect();

@@ -34,10 +34,14 @@ pub(crate) fn expand(files: &mut [File<'_>], log: &mut Log<'_>) {
         let Some(mut chart) = pou.chart.take() else { continue };
         if let Some(base) = pou.extends.filter(|it| charts.contains(&Key(it.text))) {
             log.report(
-                Diagnostic::new(Code::E0515, chart.span, format!("`{}` is a chart, and extends one", pou.name.text))
-                    .label("a second chart")
-                    .other(base.span, "this has a chart, too")
-                    .help("keep one of the two, and declare an instance of the other block"),
+                Diagnostic::new(
+                    Code::E0515,
+                    chart.span,
+                    format!("`{}` has a chart, and so does what it extends", pou.name.text),
+                )
+                .label("a second chart")
+                .other(base.span, "this has a chart, too")
+                .help("keep one of the two, and declare an instance of the other block"),
             );
             pou.routines.retain(|it| it.kind != PouKind::Action);
             continue;

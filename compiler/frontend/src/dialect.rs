@@ -76,7 +76,9 @@ impl Dialect {
         let names = || Self::names().map(|it| it.0);
         Self::named(name).ok_or_else(|| match nearest(name, names()) {
             Some(near) => format!("there is no dialect `{name}`; did you mean `{near}`?"),
-            None => format!("there is no dialect `{name}`; there are {}", names().collect::<Vec<_>>().join(", ")),
+            None => {
+                format!("there is no dialect `{name}`; the dialects are {}", names().collect::<Vec<_>>().join(", "))
+            }
         })
     }
 

@@ -193,7 +193,7 @@ impl<'s> Expansion<'_, 's> {
             let way: Vec<_> = around.iter().map(|it| self.classes.all[*it].pou.name.text).collect();
             self.diagnostics.push(
                 Diagnostic::new(Code::E0402, base.span, format!("`{}` extends itself", pou.name.text))
-                    .label("its size would be endless")
+                    .label("its size would be infinite")
                     .note(format!("the chain is {} -> {}", way.join(" -> "), base.text)),
             );
             return None;
@@ -210,7 +210,7 @@ impl<'s> Expansion<'_, 's> {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, base.span, format!("`{}` is FINAL", base.text))
                     .label("it cannot be extended")
-                    .other(span, "declared so here"),
+                    .other(span, "declared as such here"),
             );
         }
         Some(at)
@@ -301,7 +301,7 @@ impl<'s> Expansion<'_, 's> {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, new.name.span, format!("`{}` is FINAL", old.name.text))
                     .label("it cannot be overridden")
-                    .other(span, "declared so here"),
+                    .other(span, "declared as such here"),
             );
         }
         let rank = |it: &Pou<'_>| match it.modifiers.access {
@@ -324,7 +324,7 @@ impl<'s> Expansion<'_, 's> {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0403, new.name.span, format!("`{}` of the base is PRIVATE", old.name.text))
                     .label("a PRIVATE METHOD cannot be overridden: use another name here")
-                    .other(span, "declared so here"),
+                    .other(span, "declared as such here"),
             );
         }
     }

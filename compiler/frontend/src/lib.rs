@@ -544,8 +544,8 @@ fn problem(file: u16, problem: &Problem) -> Diagnostic {
         Trouble::SecondEnd => (Code::E0015, "delete it: the file itself ends the unit"),
         Trouble::OtherOrder => (
             Code::W0528,
-            "OpenPLC Editor before it was in Python 3, and Beremiz before April 2023, go from top to bottom: check which order is \
-             meant, and draw the elements in it (blocks and variables, but not coils, may have an execution order)",
+            "OpenPLC Editor before its Python 3 version, and Beremiz before April 2023, execute from top to bottom: check which order is \
+             meant, and draw the elements in that order (blocks and variables, but not coils, can have an execution order)",
         ),
         Trouble::OtherLanguage => (Code::E0902, "write it in Structured Text, or convert it in the original system"),
     };

@@ -46,7 +46,7 @@ pub(crate) fn said_once(diagnostics: Vec<Diagnostic>, units: &[Span]) -> Vec<Dia
     }
     for (place, others) in first.into_values().filter(|it| it.1 > 0) {
         let places = if others == 1 { "place" } else { "places" };
-        kept[place].notes.push(format!("it is named in {others} more {places}"));
+        kept[place].notes.push(format!("it is used in {others} more {places}"));
     }
     kept
 }

@@ -156,7 +156,7 @@ fn marks(addresses: &Addresses<'_>) -> Vec<&'static str> {
 
 /// What is said of the METHOD of an instance.
 pub(crate) const OF_INSTANCE: &str = "Before the first scan: starts the instances inside.";
-const OF_PROGRAM: &str = "Before the first scan: starts the global instances and those inside, if that has not been done.\nEach scan begins with it; if several PROGRAMs run, call it for all of them before the first scan of any.";
+const OF_PROGRAM: &str = "Before the first scan: starts the global instances, and the instances in them, unless that has been done.\nEach scan begins with it; if several PROGRAMs run, call it for all of them before the first scan of any.";
 
 fn method<'s>(body: Vec<Statement<'s>>, at: Span, doc: &str) -> Pou<'s> {
     let doc = Some(doc.to_owned());

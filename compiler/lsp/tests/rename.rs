@@ -20,7 +20,7 @@ fn each_name_of_the_examples_can_be_another() {
 /// a POINTER TO an INTERFACE.
 const NOT_YET: [&str; 2] = ["own_vendor_names", "indexed_pointers"];
 
-/// A case with two variables of one name, which the program numbers.
+/// A case with two variables of the same name, which the program numbers.
 const NUMBERED: &str = "globals_and_programs";
 
 #[test]

@@ -42,7 +42,7 @@ fn both() -> Editor {
 
 /// Where a word is in a text: the `number`th time, from 0.
 fn of(text: &str, word: &str, number: usize) -> (u32, u32) {
-    let (at, _) = text.match_indices(word).nth(number).expect("it is there");
+    let (at, _) = text.match_indices(word).nth(number).expect("the word is in the text");
     let line = text[..at].matches('\n').count();
     let column = at - text[..at].rfind('\n').map_or(0, |it| it + 1);
     (line as u32, column as u32)
@@ -200,7 +200,7 @@ fn rename_changes_all_files_or_nothing() {
     let changes = editor.ask("textDocument/rename", params.clone())["changes"].clone();
     assert_eq!(edited(PUMP, &changes[uri("pump.st")]), PUMP.replace("starts", "cycles"));
     assert_eq!(edited(MAIN, &changes[uri("main.st")]), MAIN.replace("starts", "cycles"));
-    // Another variable has the name; it is no name; a word of the language.
+    // Another variable has the name; it is not a name; it is a word of the language.
     for (new, why) in [("edge", "cannot be called"), ("2nd", "is not a name"), ("IF", "is not a name")] {
         params["newName"] = json!(new);
         let error = editor.try_ask("textDocument/rename", params.clone()).expect_err(new);

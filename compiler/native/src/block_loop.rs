@@ -11,7 +11,7 @@
 //! ```
 //!
 //! It applies to a FOR of constant bounds, by 1 or -1, whose counter nothing else writes, which takes its turns before the first one or none, and whose body is one
-//! assignment to the element at the counter, or at a constant distance from it. No index of it can fault. What is assigned is a constant of equal bytes, or such an
+//! assignment to the element at the counter, or at a constant distance from it. None of its indices can fault. The assigned value is a constant of equal bytes, or such an
 //! element of an array of the same type. It may not assume that two arrays are different storage: where `alias` does not say so, the loop
 //! stays. Within one array the loop must read each element before it writes it; a loop that reads what it has written repeats it.
 

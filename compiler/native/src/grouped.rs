@@ -109,7 +109,7 @@ impl<'p> Function<'_, 'p> {
     }
 }
 
-/// Whether there is what a body that is there several times may not have.
+/// Whether the body contains something that cannot be duplicated.
 fn has_others(body: &[Statement]) -> bool {
     let mut found = false;
     visit::statements(body, &mut |it| {

@@ -12,7 +12,7 @@
 //! and a linker drops it.
 
 use crate::count::{Mark, Marks};
-use crate::module::ROUTINES;
+use crate::signature::ROUTINES;
 use cranelift_codegen::inline::{Inline, InlineCommand};
 use cranelift_codegen::ir::{
     Block, ExternalName, FuncRef, Function, GlobalValueData, Inst, Opcode, UserExternalName, UserExternalNameRef, Value,

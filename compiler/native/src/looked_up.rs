@@ -11,9 +11,9 @@
 //!
 //! It applies to a reference in a local variable, up to the last statement that follows it before it gets another value, where
 //! that is more than once, and where variables of the type are [expected](crate::expectation) in a few places. Since the
-//! statements are there twice, they are limited in size, and among those by the runtime no further reference is looked up for
+//! statements are duplicated, they are limited in size, and among those by the runtime no further reference is looked up for
 //! several. A reference that the statement before has made of the
-//! address of such a variable leads there, and nothing is there twice. It may not assume where another reference leads: a pointer may be laid
+//! address of such a variable leads there, and nothing is duplicated. It may not assume where another reference leads: a pointer may be laid
 //! over any variable.
 
 use crate::function::{Flow, Function, Leads, LocalSlot, LookedUp};

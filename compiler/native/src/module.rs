@@ -8,6 +8,7 @@ use crate::expectation::{Expectation, expectations};
 use crate::folded::{Folded, Shared};
 use crate::inline_routine::SmallRoutines;
 use crate::measure::{Code, Made, Measures, measures};
+use crate::signature::ROUTINES;
 use crate::target::Aim;
 use crate::tidy::tidy;
 use crate::trimmed::Trimmed;
@@ -30,9 +31,6 @@ use staunch_runtime::reference::encode;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use target_lexicon::Architecture;
-
-/// In names of the code generator's: what follows is the number of a routine. A module's own functions are 0, its data 1.
-pub(crate) const ROUTINES: u32 = 2;
 
 /// The table of objects, and what code is made by that is known of them.
 struct References {

@@ -9,8 +9,8 @@
 //! v5 = iadd v4, …
 //! ```
 //!
-//! The code generator finds such loads, but in a loop none of those in other blocks. What is known at a block's end is known where the blocks
-//! after it begin, as far as all ways that lead there agree; nothing is known where a loop begins. It applies to loads and stores that
+//! The code generator finds such loads, but in a loop none of those in other blocks. Facts at the end of a block hold at the start of the blocks
+//! after it, as far as all paths to them agree; nothing is known where a loop begins. It applies to loads and stores that
 //! cannot trap. A store leaves what is known of other [classes](crate::address), and of other bytes after the same pointer. It may not
 //! assume that two pointers are different, nor anything of a call.
 

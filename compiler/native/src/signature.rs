@@ -10,6 +10,9 @@ use staunch_ir::effects::Effects;
 use staunch_ir::{Mode, Program, Repr, Routine, Type};
 use target_lexicon::{Architecture, Triple};
 
+/// In names of the code generator's: what follows is the number of a routine. A module's own functions are 0, its data 1.
+pub(crate) const ROUTINES: u32 = 2;
+
 /// All targets are 64-bit.
 pub(crate) const POINTER: Clif = types::I64;
 /// What entry points' symbols begin with, where nothing else is asked for.

@@ -13,8 +13,8 @@
 //! ```
 //!
 //! The code generator makes a frame for each function, and gives it back by three instructions. A function that calls none, keeps nothing on
-//! the stack and is given all in registers has no use for it. The others give it back by `leave`, which is what the three do. What it leaves
-//! behind each end is not run. It applies to code of which [`count`](crate::count) knows each instruction, and to ends that
+//! the stack and is given all in registers has no use for it. The others give it back by `leave`, which does what the three do. The bytes
+//! that remain after each end are never run. It applies to code of which [`count`](crate::count) knows each instruction, and to ends that
 //! nothing jumps into. It may not move constants: the machine wants some of them at multiples of 16, so that a function with operations that may
 //! have such has an instruction in place of its start that does nothing.
 

@@ -18,7 +18,7 @@ impl Emitter<'_> {
     pub fn look_up(&self, it: &LookUp) -> TokenStream {
         let (name, ty) = (&it.name, self.stored(it.ty));
         let doc = format!(
-            " The {} that a reference leads to, if it is where one is expected.",
+            " The {} that a reference refers to, if it is in one of the expected places.",
             self.program.type_name(it.ty)
         );
         let mut places = it.targets.iter().map(|it| self.place_of(it));

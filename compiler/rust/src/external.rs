@@ -17,7 +17,7 @@ impl Emitter<'_> {
         }
         let functions = externals.into_iter().map(|it| self.external(it));
         Some(quote! {
-            /// What the program calls and does not say: the module around this one implements it for its `Externals`.
+            /// The routines that the program calls but does not contain: the module that includes this one implements them for its type `Externals`.
             pub trait External { #(#functions)* }
         })
     }

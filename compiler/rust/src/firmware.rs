@@ -97,7 +97,7 @@ impl Emitter<'_> {
             }
         });
         quote! {
-            /// The programs that run.
+            /// The program instances that run.
             pub const TASKS: &[firmware::Task] = &[#(#rows),*];
         }
     }
@@ -203,7 +203,7 @@ impl Emitter<'_> {
         let (reads, writes) = (io.iter().map(Io::read), io.iter().map(Io::write));
         let (reading, writing) = (numbers(), numbers());
         quote! {
-            /// Sets each input to the bits that `read` gives for it: before a scan.
+            /// Sets each input to the bits that `read` returns for it: call it before a scan.
             pub fn read_inputs(&mut self, mut read: impl FnMut(&firmware::Io) -> u64) {
                 for (number, io) in IO.iter().enumerate() {
                     if io.area == firmware::Area::Input {
@@ -212,7 +212,7 @@ impl Emitter<'_> {
                 }
             }
 
-            /// Hands the bits of each output to `write`: after a scan.
+            /// Passes the bits of each output to `write`: call it after a scan.
             pub fn write_outputs(&self, mut write: impl FnMut(&firmware::Io, u64)) {
                 for (number, io) in IO.iter().enumerate() {
                     if io.area == firmware::Area::Output {
@@ -221,12 +221,12 @@ impl Emitter<'_> {
                 }
             }
 
-            /// The bits of the variable with this number in `IO`, the lowest first; 0 where there is none.
+            /// The bits of the variable with this number in `IO`, lowest bit first; 0 if the number is out of range.
             pub fn io(&self, number: usize) -> u64 {
                 match number { #(#reading => #reads,)* _ => 0 }
             }
 
-            /// Sets the variable with this number in `IO` from its bits; those above its width are left out.
+            /// Sets the bits of the variable with this number in `IO`; bits above its width are ignored.
             pub fn set_io(&mut self, number: usize, bits: u64) {
                 match number { #(#writing => #writes,)* _ => {} }
             }

@@ -48,11 +48,11 @@ fn state(emitter: &Emitter<'_>, code: &syn::Path, has_starts: bool) -> TokenStre
     if emitter.shared {
         let start = has_starts.then(|| {
             quote! {
-                /// A start value, which is copied and never changed.
+                /// An initial value, which is copied and never changed.
                 struct Start<T>(T);
 
                 /// # Safety
-                /// Nobody writes to one.
+                /// No code writes to it.
                 unsafe impl<T> Sync for Start<T> {}
             }
         });
@@ -152,8 +152,8 @@ fn scan_symbol() -> TokenStream {
         /// One scan; 0, or the code of a fault.
         ///
         /// # Safety
-        /// `state` has been initialised by `staunch_init` and nobody else uses it meanwhile; what was
-        /// written to it since are values of the variables' types (a BOOL is 0 or 1). `cx` points to
+        /// `state` has been initialised by `staunch_init`, and no other code uses it during the call. Only valid
+        /// values of the variables' types have been written to it since (a BOOL is 0 or 1). `cx` points to
         /// a context.
         #[unsafe(no_mangle)]
         pub unsafe extern "C" fn staunch_scan(state: *mut u8, cx: *const Context, instance: u32) -> u64 {

@@ -35,7 +35,7 @@ impl Emitter<'_> {
             quote!(const #name: u16 = #number;)
         });
         quote! {
-            /// The sources, as the `file` of a fault's location counts them.
+            /// The source files: the `file` of a fault's location is an index into them.
             pub const FILES: &[&str] = &[#(#paths),*];
             #(#consts)*
         }
@@ -185,17 +185,17 @@ impl Emitter<'_> {
         match (role, origin) {
             (Role::Scan, Origin::Declared) => doc_line("One scan."),
             (Role::Scan, Origin::Apart) => {
-                doc_line("One scan, for instances that are global: it is handed the globals that it uses.")
+                doc_line("One scan, for instances that are global: the globals that it uses are passed to it.")
             }
             (Role::Scan, Origin::Copy) => doc_line("One scan, for calls whose arguments share storage."),
-            (Role::Prescan, _) => doc_line("What counters need before the first scan."),
+            (Role::Prescan, _) => doc_line("Prepares counters and other instances for the first scan."),
             (Role::Free | Role::Method, Origin::Declared) => {
                 let word = if role == Role::Free { "FUNCTION" } else { "METHOD" };
                 let title = format!("{word} {} ({})", routine.name, self.source(routine.location));
                 self.docs(routine.doc.as_deref(), &title)
             }
             (Role::Free | Role::Method, Origin::Apart) => {
-                let title = format!("{}, which is handed the globals that it uses.", self.source(routine.location));
+                let title = format!("{}, to which the globals that it uses are passed.", self.source(routine.location));
                 self.docs(routine.doc.as_deref(), &title)
             }
             (Role::Free | Role::Method, Origin::Copy) => {

@@ -43,18 +43,18 @@ impl Emitter<'_> {
             return TokenStream::new();
         }
         let lacking = (!image.lacking.is_empty()).then(|| {
-            let text = format!(" Not in the image: {}.", image.lacking.join(", "));
+            let text = format!(" These variables have no place in the image: {}.", image.lacking.join(", "));
             quote!(#[doc = ""] #[doc = #text])
         });
         let (reads, writes) = (with_names(image.reads()), with_names(image.writes()));
         quote! {
-            /// Sets inputs and memory to what a process image has: before a scan.
+            /// Copies inputs and memory from a process image: call it before a scan.
             #lacking
             pub fn read_image(&mut self, image: &impl firmware::ProcessImage) {
                 #reads
             }
 
-            /// Writes outputs and memory to a process image: after a scan, and once before the first one.
+            /// Copies outputs and memory to a process image: call it after a scan, and once before the first one.
             pub fn write_image(&self, image: &mut impl firmware::ProcessImage) {
                 #writes
             }

@@ -27,9 +27,9 @@ impl Emitter<'_> {
         let words = table(program, &self.layout).into_iter().map(Literal::u32_unsuffixed);
         let look_ups = self.look_ups.iter().map(|it| self.look_up(it));
         quote! {
-            /// The objects that references may name, and the types in them.
+            /// The objects that references can refer to, and their types.
             const REFERENCES: reference::Table<'static> = reference::Table::new(&[#(#words),*]);
-            /// The program's whole state: what references may lead to.
+            /// The program's whole state, into which references can point.
             #[repr(C)]
             #[derive(Clone, Debug, PartialEq)]
             pub struct Machine {

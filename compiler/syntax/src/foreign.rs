@@ -176,7 +176,7 @@ fn scl(text: &str) -> Option<Kind> {
     let has_locals = lines(text).filter(|(_, line)| has_local(line)).nth(1).is_some();
     let at = head.or_else(|| (seen.len() > 1 || has_locals).then(|| seen.iter().copied().min()).flatten())?;
     Some(Kind {
-        name: "SCL of Siemens'",
+        name: "Siemens SCL",
         at,
         help: "write names without `#` and quotes, pass the contents of data blocks as variables, and delete REGION",
     })
@@ -217,7 +217,7 @@ fn statement_list(text: &str) -> Option<Kind> {
     let mut found = lines(text).filter(|(_, line)| is_statement_of_list(line)).map(|it| it.0);
     let at = found.next()?;
     found.next().map(|_| Kind {
-        name: "statement list (STL, AWL) of Siemens'",
+        name: "Siemens Statement List (STL, AWL)",
         at,
         help: "write what it does in Structured Text: `U E 0.0`, `UN E 0.1`, `= A 4.0` is `a := e0 AND NOT e1;`",
     })

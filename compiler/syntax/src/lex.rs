@@ -287,7 +287,7 @@ impl<'s> Reading<'s> {
             let it = Diagnostic::new(
                 Code::E0002,
                 self.span(place),
-                format!("`{name}` has a letter that a name cannot have"),
+                format!("`{name}` contains a letter that a name cannot contain"),
             )
             .label("expected only A to Z, 0 to 9 and `_`")
             .help("write the name with unaccented letters");

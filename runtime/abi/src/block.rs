@@ -9,7 +9,7 @@ macro_rules! shims {
     })*) => {
         $($(
             /// # Safety
-            /// `block` points to an instance that nobody else uses, `cx` to a context.
+            /// `block` points to an instance that is not used elsewhere during the call, and `cx` to a context.
             #[unsafe(no_mangle)]
             unsafe extern "C" fn $symbol(block: *mut $block, cx: *const Context, rung: bool) {
                 // SAFETY: the caller's promise.
@@ -19,7 +19,7 @@ macro_rules! shims {
 
             $(
                 /// # Safety
-                /// `block` points to an instance that nobody else uses.
+                /// `block` points to an instance that is not used elsewhere during the call.
                 #[unsafe(no_mangle)]
                 unsafe extern "C" fn $prescan_symbol(block: *mut $block) {
                     // SAFETY: the caller's promise.

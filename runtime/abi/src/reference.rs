@@ -1,6 +1,6 @@
 //! A shim for each kind of access through references.
 //!
-//! `words` points to a program's table of objects, which has its own length as its third word; `state` to
+//! `words` points to a program's table of objects, whose third word is its length; `state` points to
 //! the program's whole state.
 
 use core::cell::Cell;
@@ -18,7 +18,7 @@ unsafe fn table(words: *const u32) -> Table<'static> {
 }
 
 /// # Safety
-/// `state` points to the state of the table's program, which nobody else uses during `'a` but through it.
+/// `state` points to the state of the table's program, which is used only through this pointer during `'a`.
 unsafe fn memory<'a>(table: &Table<'_>, state: *mut u8) -> &'a [Cell<u8>] {
     // SAFETY: the table says how large the state is; a cell of a byte is laid out as the byte.
     unsafe { slice::from_raw_parts(state.cast::<Cell<u8>>(), table.state_size()) }

@@ -1,8 +1,8 @@
 //! A shim for each string function.
 //!
-//! A result is written after what its string holds already, and cut at the capacity that is given. Whoever wants a string of
-//! it alone sets the length to 0 before, and clears what the string had more of after. A function that exists for both kinds
-//! of strings has two shims.
+//! A result is appended to its string, and cut at the capacity that is passed. To replace the string, set its length to 0
+//! before the call, and clear the rest of its old units after it. A function that exists for both kinds of strings has two
+//! shims.
 
 use core::slice;
 
@@ -35,7 +35,7 @@ unsafe fn parts<'a, U: Unit>(header: *mut u8, capacity: u16) -> (&'a mut u16, &'
     }
 }
 
-/// The string at `header` as a destination, emptied.
+/// The string at `header` as a destination that replaces it.
 ///
 /// # Safety
 /// `header` points to a string of `capacity` units, aligned for its length, that nobody else
@@ -46,7 +46,7 @@ pub(crate) unsafe fn destination<'a, U: Unit>(header: *mut u8, capacity: u16) ->
     text::Destination::new(len, units)
 }
 
-/// The string at `header`, to be written after its end.
+/// The string at `header` as a destination that appends to it.
 ///
 /// # Safety
 /// As [`destination`].
@@ -116,7 +116,7 @@ unsafe extern "C" fn staunch_wide_text_append(from: *const u8, out: *mut u8, cap
     unsafe { append(&mut end::<u16>(out, capacity), units(from)) }
 }
 
-/// Sets to zero what a STRING that was `before` bytes long has more of than it is long now.
+/// Sets the bytes between the present length of a STRING and its length `before` to zero.
 ///
 /// # Safety
 /// `out` points to a string, aligned for its length, whose capacity is at least `before`.
@@ -173,7 +173,7 @@ macro_rules! shim {
     };
 }
 
-/// What writes a string, of which units, and what returns a value.
+/// Which functions write a string, and of which units, and which return a value.
 macro_rules! string_result {
     (ANY_STRING $unit:ident $rest:tt) => { shim_of_string!($unit $unit $rest) };
     (STRING $unit:ident $rest:tt) => { shim_of_string!($unit u8 $rest) };

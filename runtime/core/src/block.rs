@@ -1,15 +1,15 @@
-//! The facts about a function block, in addition to its code: pins, instructions, prescan, retention.
+//! The facts about a function block other than its code: pins, instructions, prescan, retention.
 
 use crate::{Context, Elementary, Family, Repr, Scalar, Time, Value};
 
-/// Which way a member of a block faces.
+/// The direction of a member of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Written by the caller, in declaration order when arguments are positional.
     Input,
     /// Read by the caller after a call.
     Output,
-    /// Edge and timer memory: an instance carries it, a caller does not see it.
+    /// Edge and timer memory, which is part of an instance but not visible to a caller.
     Memory,
     /// Read and written by anyone: a member of a structure that instructions share (Logix).
     Member,
@@ -26,7 +26,7 @@ pub struct Pin {
     pub role: Option<PinRole>,
     pub ty: Elementary,
     /// TRUE for a BOOL whose initial value the vendor gives as TRUE. The all-zero start state
-    /// cannot say it, so the compiler does: it puts TRUE into the instance's initial value.
+    /// cannot express this, so the compiler puts TRUE into the instance's initial value.
     pub starts_true: bool,
     pub offset: usize,
 }
@@ -44,9 +44,9 @@ pub enum PinRole {
     Load,
     Preset,
     Count,
-    /// The preset is reached; of a counter that only counts down, 0; of a bistable, it is set.
+    /// The preset is reached; for a counter that only counts down, 0 is reached; for a bistable, it is set.
     Done,
-    /// 0 is reached, of a counter that counts both ways.
+    /// 0 is reached, for a counter that counts both ways.
     Empty,
 }
 
@@ -87,7 +87,7 @@ pub struct Prescan {
     pub run: fn(bytes: &mut [u8]),
 }
 
-/// Everything the compiler knows of a standard function block.
+/// Everything the compiler knows about a standard function block.
 #[derive(Clone, Copy)]
 pub struct BlockInfo {
     pub family: Family,
@@ -104,16 +104,16 @@ pub struct BlockInfo {
     pub facts: Facts,
 }
 
-/// What else is known of some blocks.
+/// Further facts about some blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Facts {
-    /// Another name in Structured Text: the standard's for a timer of one type, `TON_TIME`.
+    /// Another name in Structured Text, such as the standard's name for a timer of one type, `TON_TIME`.
     pub alias: Option<&'static str>,
-    /// The standard overloads it: pins of its type may have this one, which is stored in the same way.
+    /// The standard overloads the block: pins of its type may have this type instead, which is stored in the same way.
     pub overload: Option<Elementary>,
-    /// No name leads to it: it takes another's place under an option.
+    /// It has no name of its own: under an option it replaces another block.
     pub option: Option<Replacement>,
-    /// A variable of the user's keeps its count.
+    /// A variable of the user keeps its count.
     pub kept: Option<KeptCount>,
     /// It counts in every call whose input is TRUE, instead of on edges.
     pub counts_levels: bool,
@@ -121,9 +121,9 @@ pub struct Facts {
     pub counts_falls: bool,
     /// It counts up only below its preset, and down only above 0.
     pub stops: bool,
-    /// It is loaded when its input becomes TRUE, and not while it is.
+    /// It is loaded when its input becomes TRUE, not as long as the input is TRUE.
     pub loads_on_edges: bool,
-    /// Pins that some controllers of the system, or its data of counters, call otherwise.
+    /// Pins that have another name in some controllers of the system, or in its counter data.
     pub other_pins: &'static [OtherPin],
     /// A system that does not have this block, and what to use there instead.
     pub instead: Option<(Family, &'static str)>,
@@ -144,7 +144,7 @@ impl Facts {
     };
 }
 
-/// Which block of its family a block stands for while an option is on.
+/// The block of its family that a block replaces while an option is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Replacement {
     pub option: BlockOption,
@@ -158,7 +158,7 @@ pub enum BlockOption {
     CtuStopAtPv,
     /// OpenPLC from v4.1: `CTD`, and `CD` of a `CTUD`, count on the rising edge.
     CdRises,
-    /// S7: `CTD` and `CTUD` are loaded when LD becomes TRUE, and not while it is.
+    /// S7: `CTD` and `CTUD` are loaded when LD becomes TRUE, not as long as it is TRUE.
     LdEdge,
     /// OpenPLC: `F_TRIG` sees an edge in a first call with FALSE, as before 2024-12.
     FTrigBefore202412,
@@ -171,28 +171,28 @@ pub struct OtherPin {
     pub pin: &'static str,
 }
 
-/// A counter with one pin more, for the variable that keeps its count over a restart.
+/// A counter with one more pin, for the variable that keeps its count over a restart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct KeptCount {
     /// The pin's name; it follows the inputs.
     pub pin: &'static str,
-    /// The block of its family that counts as it does, without the pin.
+    /// The block of its family that counts in the same way, without the pin.
     pub plain: &'static str,
 }
 
-/// What a restart keeps of a block's instances.
+/// What a restart keeps of the instances of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Retention {
-    /// Those that are RETAIN stay as they are, the others start anew.
+    /// RETAIN instances keep their values, the others start again.
     Declared,
-    /// All stay as they are, whatever their declaration says.
+    /// All instances keep their values, whatever their declaration says.
     Always,
-    /// Those that are RETAIN keep their inputs; their counts and outputs start anew.
+    /// RETAIN instances keep their inputs; their counts and outputs start again.
     Inputs,
 }
 
 impl Retention {
-    /// Whether a pin starts anew although its instance is RETAIN.
+    /// Whether a pin starts again although its instance is RETAIN.
     pub fn restarts(self, pin: &Pin) -> bool {
         match self {
             Self::Declared | Self::Always => false,
@@ -225,22 +225,22 @@ impl BlockInfo {
         self.pins.iter().find(|pin| pin.is_named(name))
     }
 
-    /// The pin for a purpose, by the name that this system has for it.
+    /// The pin with this role, whatever this system calls it.
     pub fn pin_for(&self, role: PinRole) -> Option<&'static Pin> {
         self.pins.iter().find(|pin| pin.role == Some(role))
     }
 
-    /// Whether it counts: then its name belongs to its family alone.
+    /// Whether it is a counter: then its name belongs only to its family.
     pub fn is_counter(&self) -> bool {
         self.pin_for(PinRole::Count).is_some()
     }
 
-    /// Whether a bare name means it wherever a system has no block of its own by that name.
+    /// Whether a bare name means it in every system that has no block with that name.
     pub fn is_shared(&self) -> bool {
         self.family == Family::Iec && !self.is_counter()
     }
 
-    /// Whether `name` leads to it in its family.
+    /// Whether `name` is one of its names in its family.
     pub fn is_named(&self, name: &str) -> bool {
         let names = [Some(self.name), self.facts.alias];
         self.facts.option.is_none() && names.into_iter().flatten().any(|it| it.eq_ignore_ascii_case(name))
@@ -273,7 +273,7 @@ impl core::fmt::Debug for Prescan {
     }
 }
 
-/// The fields of a block are scalars; these read and write one through its repr.
+/// The fields of a block are scalars; these functions read and write a field through its repr.
 pub(crate) fn load_field<T: Scalar>(bytes: &[u8], offset: usize) -> T {
     T::from_value(Value::read(T::LANE, &bytes[offset..])).unwrap_or_default()
 }
@@ -283,7 +283,7 @@ pub(crate) fn store_field<T: Scalar>(value: T, bytes: &mut [u8], offset: usize) 
 }
 
 /// Declares a block's members once, in the order of its struct: the [`Block`] implementation
-/// and a `const fn new`. A member that is left out does not compile.
+/// and a `const fn new`. If a member is missing here, that is a compile error.
 ///
 /// A row is `field: TYPE = "name in Structured Text"`, `true` after it if it starts TRUE, and
 /// `as Role` if it has one.

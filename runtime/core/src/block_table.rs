@@ -13,8 +13,8 @@ use crate::{
 /// symbols that native code calls.
 ///
 /// An instruction's first word says how it is called: `plain` and `timed` are function blocks
-/// (a step, without and with need of the context), `rung` takes a rung condition, `delay` that and
-/// the context, `tag` nothing, `scan` the context.
+/// (a step that does not use or uses the context), `rung` takes a rung condition, `delay` a rung
+/// condition and the context, `tag` nothing, `scan` the context.
 /// Its method is what generated Rust calls.
 #[macro_export]
 macro_rules! for_each_block {
@@ -317,7 +317,7 @@ macro_rules! prescan {
     };
 }
 
-/// `facts` with one more.
+/// `facts` with one more fact.
 macro_rules! fact {
     ($facts:ident, also $name:literal) => {
         Facts { alias: Some($name), ..$facts }
@@ -351,7 +351,7 @@ macro_rules! fact {
     };
 }
 
-/// Logix keeps every tag over a restart, Cscape no count but what R_CTU and R_CTD have in RCV;
+/// Logix keeps every tag over a restart, Cscape only the counts that R_CTU and R_CTD have in RCV;
 /// elsewhere the declaration decides.
 macro_rules! retention {
     (Logix) => {

@@ -1,4 +1,4 @@
-//! The calendar: days since 1970-01-01 and their dates, in the Gregorian calendar, also before
+//! The calendar: days since 1970-01-01 and their dates, in the Gregorian calendar, even before
 //! it was in use.
 
 use crate::Time;
@@ -9,7 +9,7 @@ const DAYS_OF_ERA: i64 = 146_097;
 /// Days from 0000-03-01 to 1970-01-01.
 const TO_1970: i64 = 719_468;
 
-/// A day by its names.
+/// A day by its year, month and day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Day {
     pub year: i64,
@@ -20,7 +20,7 @@ pub struct Day {
 }
 
 impl Day {
-    /// The day in which a point in time lies.
+    /// The day of a point in time.
     pub const fn at(time: Time) -> Self {
         let from_start = time.div_euclid(DAY) + TO_1970;
         let day = from_start.rem_euclid(DAYS_OF_ERA);
@@ -62,7 +62,7 @@ impl Day {
     }
 }
 
-/// 28 to 31; 31 for a number that is not a month.
+/// The number of days, 28 to 31; 31 for a number that is not a month.
 pub const fn days_of_month(year: i64, month: i64) -> i64 {
     match month {
         4 | 6 | 9 | 11 => 30,
@@ -72,7 +72,7 @@ pub const fn days_of_month(year: i64, month: i64) -> i64 {
     }
 }
 
-/// A time of day by its names; all are within their ranges.
+/// A time of day by its hour, minute, second and nanosecond; all are within their ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Clock {
     /// 0 to 23.
@@ -93,7 +93,7 @@ impl Clock {
         Self { hour: seconds / 3600, minute: seconds / 60 % 60, second: seconds % 60, nanosecond: time % SECOND }
     }
 
-    /// Nanoseconds since midnight; `None` for a time that no day has.
+    /// Nanoseconds since midnight; `None` for a time that is not valid.
     pub const fn since_midnight(self) -> Option<Time> {
         let Self { hour, minute, second, nanosecond } = self;
         if hour < 0 || hour >= 24 || minute < 0 || minute >= 60 || second < 0 || second >= 60 {
@@ -110,7 +110,7 @@ impl Clock {
 mod tests {
     use super::*;
 
-    /// Counts day by day, with nothing but the rule of leap years, over all that a `Time` reaches.
+    /// Counts day by day over the whole range of a `Time`, using only the rule of leap years.
     #[test]
     fn the_calendar_is_that_which_counts_day_by_day() {
         let is_leap = |year: i64| year % 4 == 0 && year % 100 != 0 || year % 400 == 0;
@@ -149,7 +149,7 @@ mod tests {
         assert_eq!(at, Day { year: 1677, month: 9, day: 22 });
     }
 
-    /// Dates that python's `datetime` gives for these numbers of seconds.
+    /// Dates that Python's `datetime` gives for these numbers of seconds.
     #[test]
     fn the_calendar_is_that_of_others() {
         for (seconds, year, month, day, hour, minute, second) in [

@@ -1,10 +1,10 @@
-//! What a scan passes to all code that runs in it: its time, whether it is the first, the time between two, and the turns that
-//! loops have left.
+//! What a scan passes to all code that runs in it: its time, whether it is the first, the time between two scans, and the turns
+//! (iterations) that its loops have left.
 
 use crate::{FaultKind, Location, Time};
 use core::cell::Cell;
 
-/// What a scan knows about the world: the runtime has no clock of its own.
+/// What a scan knows about the outside world: the runtime has no clock of its own.
 ///
 /// Native code reads this struct by offset, and hosts in C allocate it, so its layout is part of the ABI.
 #[repr(C)]
@@ -15,12 +15,12 @@ pub struct Context {
     pub first_scan: bool,
     /// The turns that the loops of this scan have left.
     turns: Cell<u64>,
-    /// Nanoseconds from one scan of this program to the next, as its host places them; 0 where the host does not say.
+    /// Nanoseconds between two scans of this program, as the host runs them; 0 if the host does not set it.
     pub cycle: Time,
     minor_faults: Cell<Noted>,
 }
 
-/// As C has it: the place is that of the first, where there is one.
+/// [`MinorFaults`] in C's layout. The place is that of the first fault, if any.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Noted {
@@ -42,11 +42,11 @@ impl Noted {
     }
 }
 
-// What C allocates for it, where numbers of 64 bits are aligned to their size.
+// The size that C allocates for it, where 64-bit numbers are aligned to their size.
 const _: () =
     assert!(align_of::<u64>() < 8 || size_of::<Context>() == 48 && core::mem::offset_of!(Context, minor_faults) == 32);
 
-/// Divisions by zero after which the program continues, as Logix has them (a minor fault of type 4, code 4).
+/// Divisions by zero after which the program continues, as in Logix (a minor fault of type 4, code 4).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MinorFaults {
     pub count: u64,
@@ -54,7 +54,7 @@ pub struct MinorFaults {
 }
 
 impl MinorFaults {
-    /// Those before, and those of a later scan.
+    /// These faults together with those of a later scan.
     #[must_use]
     pub fn and(self, later: Self) -> Self {
         Self { count: self.count.saturating_add(later.count), first: self.first.or(later.first) }
@@ -62,7 +62,7 @@ impl MinorFaults {
 }
 
 impl Context {
-    /// The turns that the loops of one scan have together, unless it is said otherwise. Loops
+    /// The turns that all loops of one scan have together, unless [`with_turns`](Self::with_turns) sets another number. Loops
     /// whose constants show that they end after few turns take none.
     pub const TURNS: u64 = 10_000_000;
 
@@ -93,30 +93,33 @@ impl Context {
         Self::new(now, true)
     }
 
-    /// Time since start at the beginning of this scan, in nanoseconds; never goes back.
+    /// Time since start at the beginning of this scan, in nanoseconds; it never decreases.
     #[inline]
     pub fn now(&self) -> Time {
         self.now.get()
     }
 
-    /// Lets time pass in the midst of a scan, as only a unit test does; it does not go back.
+    /// Lets time pass within a scan, as only a unit test does; a negative time is ignored.
     pub fn advance(&self, time: Time) {
         self.now.set(self.now.get().saturating_add(time.max(0)));
     }
 
-    /// The same with another number of turns for its loops.
+    /// This context with another number of turns for its loops.
     #[must_use]
     pub fn with_turns(self, turns: u64) -> Self {
         Self { turns: Cell::new(turns), ..self }
     }
 
-    /// The same for a program that is scanned every `cycle` nanoseconds.
+    /// This context for a program that is scanned every `cycle` nanoseconds.
     #[must_use]
     pub fn with_cycle(self, cycle: Time) -> Self {
         Self { cycle, ..self }
     }
 
-    /// Takes one turn of a loop; [`FaultKind::LoopBudget`] if none is left.
+    /// Takes one turn of a loop.
+    ///
+    /// # Errors
+    /// [`FaultKind::LoopBudget`] if none is left.
     #[inline]
     pub fn take_turn(&self) -> Result<(), FaultKind> {
         let left = self.turns.get();

@@ -1,6 +1,6 @@
 //! The checksum of retained variables, both in a host's file and in a firmware's memory.
 
-/// CRC-32 (IEEE 802.3, as in Ethernet and ZIP) of bytes that come piece by piece.
+/// CRC-32 (IEEE 802.3, as in Ethernet and ZIP) of bytes that arrive in pieces.
 #[derive(Clone, Copy, Debug)]
 pub struct Crc32(u32);
 
@@ -9,7 +9,7 @@ impl Crc32 {
         Self(u32::MAX)
     }
 
-    /// Goes on with these bytes.
+    /// Continues with these bytes.
     #[must_use]
     pub const fn with(self, bytes: &[u8]) -> Self {
         let (mut crc, mut at) = (self.0, 0);

@@ -1,5 +1,5 @@
-//! Reals to decimal digits and back, exactly: as few digits as read back the same, and the nearest real to
-//! up to 38 digits.
+//! Conversion between reals and decimal digits, exactly: the fewest digits that read back as the same real, and the real
+//! nearest to up to 38 digits.
 
 mod big;
 mod digits;
@@ -7,7 +7,7 @@ mod digits;
 pub(crate) use big::rounded;
 pub(crate) use digits::{Digits, Format, LREAL, REAL};
 
-/// The fewest digits that are nearer to `value` than to any other of its format; `value` is finite and above 0.
+/// The fewest digits that are nearer to `value` than to any other number of its format; `value` is finite and above 0.
 pub(crate) fn shortest(value: f64, format: Format) -> Digits {
     let mut buffer = ryu::Buffer::new();
     let spelled = match format {
@@ -21,7 +21,7 @@ pub(crate) fn shortest(value: f64, format: Format) -> Digits {
     digits
 }
 
-/// The real nearest to `digits * 10^exponent`, ties to even; infinity where it is beyond the greatest.
+/// The real nearest to `digits * 10^exponent`, ties to even; infinity beyond the greatest real.
 pub(crate) fn nearest(digits: u128, exponent: i32, format: Format) -> f64 {
     at_once(digits, exponent, format).unwrap_or_else(|| big::nearest(digits, exponent, format))
 }

@@ -4,24 +4,24 @@ use crate::{Repr, time};
 
 macro_rules! elementary {
     ($($(#[$doc:meta])* $ty:ident $name:ident $rust:ident $repr:ident $class:ident;)*) => {
-        /// An elementary type that a scalar carries. Ordered as the standard lists them (table 10).
+        /// An elementary type. The order is that of the standard's list (table 10).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Elementary { $($(#[$doc])* $ty),* }
 
         impl Elementary {
             pub const ALL: [Self; { [$(Repr::$repr),*].len() }] = [$(Self::$ty),*];
 
-            /// The name that no other type has.
+            /// Its unique name.
             pub const fn own_name(self) -> &'static str {
                 match self { $(Self::$ty => stringify!($name)),* }
             }
 
-            /// How its values are carried.
+            /// How its values are represented.
             pub const fn repr(self) -> Repr {
                 match self { $(Self::$ty => Repr::$repr),* }
             }
 
-            /// The narrowest class that it belongs to.
+            /// The smallest class that contains it.
             pub const fn class(self) -> Class {
                 match self { $(Self::$ty => Class::$class),* }
             }
@@ -58,7 +58,7 @@ elementary! {
     /// Nanoseconds, signed 64-bit, as LTIME.
     Time    TIME    i64   I64   Duration;
     Ltime   LTIME   i64   I64   Duration;
-    /// Nanoseconds without a sign: an LTIME of CODESYS, which is what a user calls it.
+    /// Unsigned nanoseconds: the LTIME of CODESYS, and `LTIME` is its name in programs.
     Ultime  ULTIME  u64   U64   Duration;
     /// The midnight at which the day starts, in nanoseconds since 1970-01-01; as LDATE.
     Date    DATE    i64   I64   Date;
@@ -69,9 +69,9 @@ elementary! {
     /// Nanoseconds since 1970-01-01; as LDT.
     Dt      DT      i64   I64   Date;
     Ldt     LDT     i64   I64   Date;
-    /// A character by its number: a byte, as a STRING has them.
+    /// A character by its number: a byte, as in a STRING.
     Char    CHAR    u8    U8    Char;
-    /// A UTF-16 code unit, as a WSTRING has them.
+    /// A UTF-16 code unit, as in a WSTRING.
     Wchar   WCHAR   u16   U16   Char;
 }
 
@@ -85,7 +85,7 @@ const LONG_NAMES: [(&str, Elementary); 4] = [
 
 macro_rules! classes {
     ($($(#[$doc:meta])* $class:ident $name:literal $($parent:ident)?;)*) => {
-        /// A class of types, as the standard's figure of them has it (edition 3, figure 5).
+        /// A class of types, as in the standard's figure (edition 3, figure 5).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Class { $($(#[$doc])* $class),* }
 
@@ -97,7 +97,7 @@ macro_rules! classes {
                 match self { $(Self::$class => $name),* }
             }
 
-            /// The class that this one is a part of.
+            /// The class that contains this one.
             pub const fn parent(self) -> Option<Self> {
                 match self { $(Self::$class => classes!(@parent $($parent)?)),* }
             }
@@ -112,7 +112,7 @@ macro_rules! classes {
 }
 
 classes! {
-    /// Every type, a user's own too.
+    /// Every type, including user-defined types.
     Any         "ANY";
     Elementary  "ANY_ELEMENTARY"  Any;
     /// Types with a magnitude: numbers and durations.
@@ -133,7 +133,7 @@ classes! {
 }
 
 impl Class {
-    /// Whether `other` is this class or a part of it.
+    /// Whether `other` is this class or is contained in it.
     pub const fn contains(self, other: Self) -> bool {
         let mut at = Some(other);
         while let Some(class) = at {
@@ -160,7 +160,7 @@ impl Elementary {
         Self::ALL.into_iter().find(|it| it.own_name() == name)
     }
 
-    /// Finds a type by its keyword, in any case.
+    /// Finds a type by its keyword, in upper or lower case.
     pub fn named(name: &str) -> Option<Self> {
         // Most names differ in their first letter or their length.
         let first = name.as_bytes().first()?.to_ascii_uppercase();
@@ -170,7 +170,7 @@ impl Elementary {
         short().or_else(long)
     }
 
-    /// The type that counts or calculates in a repr; BOOL for a `bool`.
+    /// The numeric type with this repr; BOOL for a `bool`.
     pub const fn number(repr: Repr) -> Self {
         match repr {
             Repr::Bool => Self::Bool,
@@ -201,12 +201,12 @@ impl Elementary {
         self.is(Class::Duration)
     }
 
-    /// A duration, a date or a time of day: the types that a [`Time`](crate::Time) carries.
+    /// A duration, a date or a time of day: the types that are stored as a [`Time`](crate::Time).
     pub const fn is_time(self) -> bool {
         self.is_duration() || self.is(Class::Date)
     }
 
-    /// A day, by its midnight.
+    /// A day, stored as its midnight.
     pub const fn is_day(self) -> bool {
         matches!(self, Self::Date | Self::Ldate)
     }
@@ -221,9 +221,9 @@ impl Elementary {
         matches!(self, Self::Dt | Self::Ldt)
     }
 
-    /// What a number counts that is converted to this type or from it, for what a [`Time`](crate::Time)
-    /// carries: as CODESYS documents it, milliseconds of durations and times of day, seconds of dates,
-    /// and nanoseconds of the long forms of these.
+    /// The unit, in nanoseconds, of a number that is converted to or from this type, if it is stored as a
+    /// [`Time`](crate::Time): as CODESYS documents it, milliseconds for durations and times of day, seconds for dates,
+    /// and nanoseconds for the long forms of these.
     pub const fn counted_in(self) -> Option<crate::Time> {
         match self {
             Self::Time | Self::Tod => Some(time::MILLISECOND),
@@ -233,7 +233,7 @@ impl Elementary {
         }
     }
 
-    /// An integer, BOOL or a bit string: what counts, and has bits.
+    /// An integer, BOOL or a bit string.
     pub const fn is_integral(self) -> bool {
         self.is_integer() || self.is_bits()
     }

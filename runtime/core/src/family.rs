@@ -5,15 +5,15 @@ use crate::Elementary;
 /// The system whose documentation defines a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
-    /// IEC 61131-3 as Autonomy Edge documents it. Owns also the blocks that all systems share.
+    /// IEC 61131-3 as Autonomy Edge documents it. It also owns the blocks that all systems share.
     Iec,
     /// Horner Cscape, IEC editor with Enhanced IEC.
     Cscape,
     /// CODESYS Standard and Standard64.
     Codesys,
-    /// OpenPLC v3, OpenPLC Editor before v4.2, and Beremiz: MATIEC's library, as it runs.
+    /// OpenPLC v3, OpenPLC Editor before v4.2, and Beremiz: MATIEC's library, as it behaves.
     Openplc,
-    /// OpenPLC Editor from v4.2 and Runtime from v4.1: STruC++'s library, as it runs.
+    /// OpenPLC Editor from v4.2 and Runtime from v4.1: STruC++'s library, as it behaves.
     Openplc4,
     /// Rockwell Logix 5000.
     Logix,
@@ -21,12 +21,12 @@ pub enum Family {
     S7,
 }
 
-/// Which variables an event leaves as they are.
+/// Which variables keep their values in an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Keeps {
-    /// Those that are declared RETAIN or PERSISTENT; all others start anew.
+    /// Those that are declared RETAIN or PERSISTENT; all others are initialised again.
     Declared,
-    /// All, of every type.
+    /// All variables, of every type.
     Everything,
 }
 

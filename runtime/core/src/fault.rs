@@ -9,21 +9,21 @@ use core::fmt;
 pub enum FaultKind {
     /// An integer was divided by zero, by `/` or `MOD`.
     DivideByZero = 1,
-    /// An array index, or the selector of `MUX`, lies outside its bounds.
+    /// An array index, or the selector of `MUX`, is out of bounds.
     IndexOutOfRange = 2,
     /// A value does not fit the subrange of the variable it was assigned to.
     SubrangeViolated = 3,
     /// The step of a FOR loop is zero.
     ZeroStep = 4,
-    /// The loops of a scan took more turns than it has: one of them may have no end.
+    /// The loops of a scan took more turns than its budget: one of them may be endless.
     LoopBudget = 5,
-    /// Numbers of a year, a month, a day or a time of day that are not valid, or out of range.
+    /// A year, month, day or time of day is not valid, or out of range.
     NoSuchDate = 6,
     /// A null reference was followed.
     NullReference = 7,
-    /// A reference was followed to outside of the object that it came from.
+    /// A reference was followed out of the object for which it was made.
     OutsideObject = 8,
-    /// A WSTRING was read or written from the middle of a code unit on.
+    /// A WSTRING was read or written starting in the middle of a code unit.
     MisalignedReference = 9,
     /// The target of a reference may not be viewed as the requested type.
     ForbiddenView = 10,
@@ -31,17 +31,17 @@ pub enum FaultKind {
     AssertionFailed = 11,
     /// The called routine has no implementation here: it is outside Structured Text, or a library only declares it.
     NotImplemented = 12,
-    /// The preset or the accumulated value of a Logix TIMER is below 0 where it times.
+    /// The preset or the accumulated value of a Logix TIMER is negative while it times.
     NegativeTimer = 13,
-    /// A reference was followed to an object that `__DELETE` has given back to its pool.
+    /// A reference was followed to an object that `__DELETE` has returned to its pool.
     Deleted = 14,
-    /// `__DELETE` was given what `__NEW` did not make.
+    /// The argument of `__DELETE` was not created by `__NEW`.
     NotOfPool = 15,
     /// The program raised an exception (TwinCAT's `F_RaiseException`).
     Raised = 16,
-    /// References led METHODs back to an instance whose METHOD had not ended.
+    /// A call through references came back to an instance whose METHOD had not returned yet.
     Recursion = 17,
-    /// Four bits are not a decimal digit, or a number has more digits than a BCD number of S7 holds.
+    /// Four bits are not a decimal digit, or a number has more digits than a BCD number in S7 can hold.
     NotDecimal = 18,
 }
 
@@ -92,7 +92,7 @@ impl FaultKind {
             Self::NotOfPool => "`__DELETE` of an object that `__NEW` did not make",
             Self::Raised => "an exception was raised",
             Self::Recursion => "a METHOD was called again before it had ended",
-            Self::NotDecimal => "not a BCD number of so many digits",
+            Self::NotDecimal => "not a BCD number with that many digits",
         }
     }
 
@@ -134,7 +134,7 @@ pub struct Location {
 }
 
 impl Location {
-    /// Of a fault that is the caller's: the call gives it its own place.
+    /// The place of a fault that belongs to the caller: the call replaces it with its own place.
     pub const CALLER: Self = Self { file: 0, column: 0, line: 0 };
 }
 
@@ -147,26 +147,28 @@ pub struct Fault {
 
 impl Fault {
     /// The fault as native code returns it, never 0: from the low bit, 8 bits of kind, 16 of
-    /// file, 16 of column, 24 of line. A line that needs more shows as the greatest.
+    /// file, 16 of column, 24 of line. A line that needs more bits is saturated.
     pub const fn code(self) -> u64 {
         let line = if self.at.line > LINE_MAX { LINE_MAX } else { self.at.line };
         self.kind as u64 | (self.at.file as u64) << 8 | (self.at.column as u64) << 24 | (line as u64) << 40
     }
 
-    /// The fault as a call passes it on: one that is [the caller's](Location::CALLER) is at the call.
+    /// The fault as a call passes it on: a fault of [the caller](Location::CALLER) gets the place of the call.
     #[must_use]
     pub const fn of_call(self, at: Location) -> Self {
         let is_callers = self.at.file == 0 && self.at.line == 0 && self.at.column == 0;
         if is_callers { Self { kind: self.kind, at } } else { self }
     }
 
-    /// The number of its kind, for a program that handles the fault; the fault itself, where it
-    /// [may not](FaultKind::can_be_caught).
+    /// The number of its kind, for a program that handles the fault.
+    ///
+    /// # Errors
+    /// The fault itself, if it [cannot be caught](FaultKind::can_be_caught).
     pub const fn caught(self) -> Result<u8, Self> {
         if self.kind.can_be_caught() { Ok(self.kind as u8) } else { Err(self) }
     }
 
-    /// The fault with this code; `None` for 0, and for what [`code`](Self::code) never gives.
+    /// The fault with this code; `None` for 0, and for values that [`code`](Self::code) never returns.
     #[inline]
     pub fn from_code(code: u64) -> Option<Self> {
         let kind = FaultKind::from_code(code as u8)?;
@@ -176,7 +178,7 @@ impl Fault {
 }
 
 impl Fault {
-    /// The fault with the names of its program's files, to be shown: `line.st:12:5: division by zero`.
+    /// The fault together with the names of its program's files, for display: `line.st:12:5: division by zero`.
     /// Generated Rust has them as `FILES`.
     ///
     /// ```
@@ -190,7 +192,7 @@ impl Fault {
     }
 }
 
-/// A fault of a program with these files; a number that is none of them shows as `?`.
+/// A fault of a program with these files; a file number out of range is displayed as `?`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FaultOf<'f> {
     pub fault: Fault,
@@ -218,7 +220,7 @@ impl fmt::Display for Fault {
 
 impl core::error::Error for Fault {}
 
-/// Gives the bare [`FaultKind`] of an operation its place in the source, and a fault of a call that has none.
+/// Adds the place in the source to the bare [`FaultKind`] of an operation, and to a fault of a call that has no place yet.
 pub trait OrFault<T> {
     /// `file` is the file's number in the program; `line` and `column` count from 1.
     fn at(self, file: u16, line: u32, column: u16) -> Result<T, Fault>;

@@ -5,8 +5,8 @@ use crate::literal::UNITS;
 use crate::{Elementary, Time};
 use core::fmt::{Result, Write};
 
-/// A duration, a date or a time of day as a literal: `T#1s500ms`, `D#2024-02-29`, `TOD#23:59:59.5`. Of an
-/// [LTIME without a sign](Elementary::Ultime) `time` has the bits.
+/// A duration, a date or a time of day as a literal: `T#1s500ms`, `D#2024-02-29`, `TOD#23:59:59.5`. For an
+/// [unsigned LTIME](Elementary::Ultime), `time` holds its bits.
 pub fn time(out: &mut impl Write, ty: Elementary, time: Time) -> Result {
     out.write_str(match ty {
         Elementary::Time => "T#",
@@ -30,7 +30,7 @@ pub fn time(out: &mut impl Write, ty: Elementary, time: Time) -> Result {
     }
 }
 
-/// `1d2h3m4s5ms6us7ns`, without units of which there is none; `0s` for none at all.
+/// `1d2h3m4s5ms6us7ns`, without the units that are 0; `0s` if all are.
 pub fn duration(out: &mut impl Write, time: Time) -> Result {
     if time < 0 {
         out.write_char('-')?;
@@ -84,16 +84,16 @@ fn time_of_day(out: &mut impl Write, time: Time) -> Result {
     number(out, fraction, digits)
 }
 
-/// In decimal, with zeros before it where it has fewer digits than `least`.
+/// In decimal, with leading zeros if it has fewer digits than `least`.
 fn number(out: &mut impl Write, value: u64, least: usize) -> Result {
     let mut buffer = [0; MOST_DIGITS];
     out.write_str(core::str::from_utf8(digits(value, least, &mut buffer)).unwrap_or_default())
 }
 
-/// The digits of the greatest number.
+/// The number of digits of the greatest number.
 pub(crate) const MOST_DIGITS: usize = 20;
 
-/// The decimal digits of a number, with zeros before them where there are fewer than `least`.
+/// The decimal digits of a number, with leading zeros if there are fewer than `least`.
 pub(crate) fn digits(value: u64, least: usize, buffer: &mut [u8; MOST_DIGITS]) -> &[u8] {
     let (mut rest, mut start) = (value, MOST_DIGITS);
     for (at, place) in buffer.iter_mut().enumerate().rev() {

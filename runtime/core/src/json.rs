@@ -1,8 +1,8 @@
-//! Texts as JSON writes them, for the output of the compiler, the host and a firmware.
+//! Strings in JSON, for the output of the compiler, the host and a firmware.
 
 use core::fmt::{self, Write};
 
-/// A text in quotes. `<` is escaped as well, so that JSON may be a part of a page.
+/// A string in quotes. `<` is escaped as well, so that the JSON may be part of an HTML page.
 ///
 /// ```
 /// assert_eq!(staunch_runtime::json::Quoted("a \"b\"\n").to_string(), r#""a \"b\"\n""#);

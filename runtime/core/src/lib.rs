@@ -55,7 +55,7 @@ pub use time::Time;
 #[doc(hidden)]
 pub use turns::Strips;
 
-/// Includes what `staunch_build` made of Structured Text, by its name there: the file's stem.
+/// Includes the Rust code that `staunch_build` generated from Structured Text, by its name: the stem of the source file.
 ///
 /// ```ignore
 /// mod plc {

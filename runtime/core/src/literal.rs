@@ -1,13 +1,13 @@
 //! Literals as Structured Text spells them: text to value (IEC 61131-3, tables 5 and 8).
 //!
-//! The compiler reads them in sources and the host in the cells of a stimulus, so that both take
-//! and refuse the same.
+//! The compiler reads them in sources and the host in the cells of a stimulus, so that both accept
+//! and refuse the same literals.
 
 use crate::calendar::{Clock, Day, days_of_month};
 use crate::time::{DAY, SECOND};
 use crate::{Elementary, Time};
 
-/// What is wrong with a literal, and in which bytes of its text.
+/// What is wrong with a literal, and where in its text, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LiteralError {
     pub start: usize,
@@ -17,7 +17,7 @@ pub struct LiteralError {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LiteralErrorKind {
-    /// The base of a number is none of 2, 8 and 16.
+    /// The base of a number is not 2, 8 or 16.
     Base,
     NoDigits,
     /// A character that is not a digit of the number's base.
@@ -36,7 +36,7 @@ pub enum LiteralErrorKind {
     UnknownUnit,
     /// A unit after a shorter one, or after itself.
     UnitOrder,
-    /// A fraction in a part that is not the last. `total` has the nanoseconds of all parts.
+    /// A fraction in a part that is not the last. `total` is the nanoseconds of all parts.
     InnerFraction {
         total: i128,
     },
@@ -50,26 +50,26 @@ pub enum LiteralErrorKind {
     /// Not a date with a time of day.
     DateAndTimeForm,
     Month,
-    /// A day that its month does not have; that has `last`.
+    /// A day that its month does not have: the last one is `last`.
     Day {
         last: i64,
     },
     Hour,
     Minute,
     Second,
-    /// A date that 64 bits of nanoseconds do not reach.
+    /// A date that is out of the range of 64 bits of nanoseconds.
     DateTooFar,
 }
 
 impl LiteralErrorKind {
-    /// A sentence without its full stop.
+    /// The message, without a full stop.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Base => "a number's base is 2, 8 or 16",
             Self::NoDigits => "the number has no digits",
             Self::Digit { .. } => "a digit is not one of the number's base",
-            Self::UnderscoreInNumber => "`_` is only between two digits",
-            Self::UnderscoreInDuration => "`_` is only between two digits, or between two units",
+            Self::UnderscoreInNumber => "`_` is allowed only between two digits",
+            Self::UnderscoreInDuration => "`_` is allowed only between two digits, or between two units",
             Self::NumberTooLarge => "the number does not fit 64 bits",
             Self::NoNumber => "expected a number before the unit",
             Self::NoUnit => "a duration needs a unit: d, h, m, s, ms, us or ns",
@@ -106,7 +106,7 @@ pub const UNITS: [(&str, Time); 7] = [
 
 type IsByte = fn(&u8) -> bool;
 
-/// To look for a character in text. `core` looks for a `char` with code that can panic.
+/// Finds a character in text. `core` finds a `char` with code that can panic.
 pub(crate) fn is(character: char) -> impl Fn(char) -> bool {
     move |it| it == character
 }
@@ -139,7 +139,7 @@ pub fn integer(text: &str) -> Result<u64, LiteralError> {
     Ok(value)
 }
 
-/// Whether a real is spelled right: `1_000.5e-3`, after an optional sign; the fraction and the
+/// Whether a real is spelled correctly: `1_000.5e-3`, after an optional sign; the fraction and the
 /// exponent may be left out.
 pub fn check_real(text: &str) -> Result<(), LiteralError> {
     underscores(text, u8::is_ascii_digit, u8::is_ascii_digit, LiteralErrorKind::UnderscoreInNumber)?;
@@ -164,7 +164,7 @@ pub fn duration(text: &str) -> Result<Time, LiteralError> {
     Time::try_from(total).map_err(|_| outside(text, LiteralErrorKind::DurationTooLong))
 }
 
-/// The same without a sign: up to twice as long.
+/// The same for an unsigned duration, which can be twice as long.
 pub fn unsigned_duration(text: &str) -> Result<u64, LiteralError> {
     let total = nanoseconds(text)?;
     u64::try_from(total).map_err(|_| outside(text, LiteralErrorKind::UnsignedDuration))
@@ -203,7 +203,7 @@ fn nanoseconds(text: &str) -> Result<i128, LiteralError> {
     Ok(if text.starts_with('-') { -total } else { total })
 }
 
-/// Where a unit of a duration is not the longest one, and is as much as a longer one: `68s` in `5m68s`.
+/// The place of a unit in a duration that is not the first one, and overflows into a longer unit: `68s` in `5m68s`.
 ///
 /// ```
 /// use staunch_runtime::literal::lower_overflow;
@@ -232,8 +232,8 @@ pub fn type_of_prefix(prefix: &str) -> Option<Elementary> {
     short.or_else(|| Elementary::named(prefix)).filter(|it| it.is_time())
 }
 
-/// The value of a literal of a duration, a date or a time of day: what follows its `#`. Of an
-/// [LTIME without a sign](Elementary::Ultime) it is the bits.
+/// The value of a literal of a duration, a date or a time of day, from the text after its `#`. For an
+/// [unsigned LTIME](Elementary::Ultime) it is the bits.
 pub fn time(ty: Elementary, text: &str) -> Result<Time, LiteralError> {
     match ty {
         Elementary::Date | Elementary::Ldate => date(text),
@@ -313,7 +313,7 @@ pub fn date_and_time(text: &str) -> Result<Time, LiteralError> {
     Time::try_from(time).map_err(|_| whole(LiteralErrorKind::DateTooFar))
 }
 
-/// Up to three numbers between separators, and where each ends.
+/// Up to three numbers between separators, and the end of each.
 struct Fields {
     values: [i64; 3],
     ends: [usize; 3],
@@ -387,8 +387,8 @@ fn scaled(whole: &str, fraction: &str, scale: i128) -> i128 {
     decimal(whole).saturating_mul(scale).saturating_add(part)
 }
 
-/// A tenth of a number that is not negative, rounded down. The compiler's own division of 128 bits brings the
-/// unwinder along, which a C program that links this library does not have.
+/// A tenth of a non-negative number, rounded down. The compiler's own 128-bit division needs the
+/// unwinder, which a C program that links this library does not have.
 fn tenth(number: i128) -> i128 {
     let divide = |(quotient, rest): (i128, u64), shift: u32| {
         let limb = u64::try_from(number >> shift & 0xFFFF_FFFF).unwrap_or(0);
@@ -398,7 +398,7 @@ fn tenth(number: i128) -> i128 {
     [96, 64, 32, 0].into_iter().fold((0, 0), divide).0
 }
 
-/// The number that digits spell, saturating; other characters between them are passed over.
+/// The number with these digits, saturating; other characters between them are ignored.
 fn decimal(text: &str) -> i128 {
     digits(text).fold(0, appended)
 }
@@ -411,7 +411,7 @@ fn appended(number: i128, digit: i128) -> i128 {
     number.saturating_mul(10).saturating_add(digit)
 }
 
-/// `text` holds no `_` but after a byte that is `before` one and before a byte that is `after` one.
+/// Whether each `_` in `text` comes after a byte for which `before` holds, and before a byte for which `after` holds.
 fn underscores(text: &str, before: IsByte, after: IsByte, kind: LiteralErrorKind) -> Result<(), LiteralError> {
     let bytes = text.as_bytes();
     let is = |at: Option<usize>, what: IsByte| at.and_then(|it| bytes.get(it)).is_some_and(what);

@@ -1,13 +1,13 @@
-//! The operations on elementary values and on texts, one row each, as macros over all rows.
+//! The operations on elementary values and on strings, one row each, as macros over all rows.
 
 /// Every operator and standard function on elementary values, one row each.
 ///
 /// The compiler expands the table into its `Op` enum and the interpreter's dispatch;
 /// `staunch-runtime-abi` expands it into the C symbols that native code calls.
 ///
-/// The parameters are named as in the standard's tables. `T` is the one type of all operands that
-/// are `T`: in brackets is its class, and the reprs that the operation exists at (`with_repr!`
-/// lists them; they reach beyond the class where a dialect does). `faults` marks a function that
+/// The parameters are named as in the standard's tables. `T` is the common type of all operands that
+/// are `T`. Its class is in brackets, with the reprs for which the operation exists (`with_repr!`
+/// lists them; they go beyond the class if a dialect does). `faults` marks a function that
 /// returns `Result<_, FaultKind>`; a `total` one returns its value. An `extensible` one takes more
 /// operands of its last parameter's kind.
 #[macro_export]
@@ -156,9 +156,9 @@ macro_rules! with_repr {
 }
 
 /// Every function on character strings, one row each, as in [`for_each_op!`]. A string operand is a
-/// slice of units; a string result is written to a destination that cuts it at its capacity. In
-/// brackets is for which strings the function exists: `each` for STRINGs and for WSTRINGs, where
-/// ANY_STRING is the one of all operands and the result; `one` as the row says.
+/// slice of units; a string result is written to a destination that cuts it at its capacity. The
+/// brackets show for which strings the function exists: `each` for STRINGs and for WSTRINGs, where
+/// ANY_STRING is the common type of all operands and the result; `one` for those that the row names.
 #[macro_export]
 macro_rules! for_each_text_op {
     ($expand:ident) => {
@@ -234,8 +234,8 @@ macro_rules! for_each_text_op {
     };
 }
 
-/// Runs `$body` with `type $U` set to the unit of a row's strings: of each kind as `$wide` says; where a row is
-/// of `one`, it names its own.
+/// Runs `$body` with `type $U` set to the unit of a row's strings. `$wide` selects it for rows of `each`; a row of
+/// `one` names its own.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! with_unit {

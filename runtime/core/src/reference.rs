@@ -1,17 +1,17 @@
 //! References: checked access to the variables whose addresses a program takes.
 //!
-//! A program has no heap and no recursion, so its world is closed: the objects that references may name are
+//! A program has no heap and no recursion, so the objects that references can refer to are all
 //! known, each with its place in the program's state. A [`Reference`] is the number of an object and an
-//! address, in bytes; arithmetic moves the address and never changes the object. A [`Table`] says
-//! where the objects are and which types they contain, and decides every access: all executors ask it, so
+//! address, in bytes; arithmetic changes the address, but never the object. A [`Table`] lists
+//! where the objects are and which types they contain, and checks every access: all executors use it, so
 //! that all fault in the same way.
 //!
-//! Numbers may be viewed as bytes and as one another, in the machine's byte order; a BOOL as a byte that is
-//! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0. Numbers side by
-//! side in a structure may be viewed as one; a byte between members is 0, and takes no write. Enumerations are
-//! viewed at their own type, and as bytes; subranges, references and standard blocks only at their own type.
+//! Numbers can be viewed as bytes and as other numbers, in the machine's byte order; a BOOL as a byte that is
+//! 0 or not. A string is viewed as its characters with a zero after the last one, from position 0. Adjacent numbers
+//! in a structure can be viewed as one number; padding bytes between members are 0, and writing to them has no effect.
+//! Enumerations are viewed as their own type, and as bytes; subranges, references and standard blocks only as their own type.
 //!
-//! An object in a pool has a mark, which says whether it is in use: what leads to one that was deleted is a fault.
+//! An object in a pool has a mark, which shows whether it is in use: following a reference to a deleted object is a fault.
 
 mod copy;
 mod found;
@@ -28,18 +28,18 @@ use crate::text::Unit;
 use crate::{FaultKind, Scalar, StringType, Text, Value, WideText};
 
 /// The value of a variable of a reference type: the object's number, from 1, in the low bits of the upper half, and
-/// the address in the lower. 0 is null. The bits above the object's number are [`CLASS`]: they say which class
-/// an instance is of, for calls that depend on it, and have no part in an access.
+/// the address in the lower. 0 is null. The bits above the object's number are [`CLASS`]: the class of an
+/// instance, for calls that depend on it. They are not used in an access.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     pub object: u32,
     pub address: u32,
 }
 
-/// The address of the state's first byte. It makes addresses differ from null, and aligned as the state is.
+/// The address of the state's first byte. It keeps addresses different from null, and aligned like the state.
 pub const ORIGIN: u32 = 0x1000;
 
-/// Where the number of an instance's class begins in a reference. Below it there is room for 2^20 objects.
+/// The lowest bit of the class number in a reference. The bits below it are enough for 2^20 objects.
 pub const CLASS: u32 = 52;
 
 impl Reference {
@@ -182,7 +182,7 @@ impl<'t> Table<'t> {
         Ok(())
     }
 
-    /// The characters from where the reference points up to the first zero, as far as `out` takes them.
+    /// Appends the characters from the reference's target up to the first zero to `out`, as many as fit.
     pub fn load_text<U: Unit>(
         &self,
         memory: &(impl Memory + ?Sized),
@@ -203,7 +203,7 @@ impl<'t> Table<'t> {
         Ok(())
     }
 
-    /// Writes characters to where the reference points, and ends the string there: as many as fit.
+    /// Writes characters to the reference's target, as many as fit, and ends the string after them.
     pub fn store_text<U: Unit>(
         &self,
         memory: &(impl Memory + ?Sized),
@@ -234,7 +234,7 @@ impl<'t> Table<'t> {
         Ok(())
     }
 
-    /// The variable of exactly this type that the reference leads to.
+    /// The variable of exactly this type that the reference refers to.
     #[cold]
     pub fn variable<'m, T: core::any::Any>(
         &self,
@@ -288,7 +288,7 @@ fn length(memory: &(impl Memory + ?Sized), text: usize) -> u16 {
     u16::from_ne_bytes(length)
 }
 
-/// A byte of a string's characters; after the last one there are zeros.
+/// A byte of a string's characters; 0 after the last one.
 fn character_byte(memory: &(impl Memory + ?Sized), text: usize, ty: StringType, at: usize) -> u8 {
     let mut byte = [0];
     if at < usize::from(ty.capacity) * ty.unit_size() as usize {

@@ -1,8 +1,8 @@
-//! How values of elementary types are carried, and one such value of any type.
+//! How values of elementary types are represented, and one such value of any type.
 
 use core::fmt::Debug;
 
-/// How an elementary value is carried: a Rust primitive. Several IEC types share a repr
+/// How an elementary value is represented: a Rust primitive. Several IEC types share a repr
 /// (BYTE and USINT; LINT, TIME and LTIME).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Repr {
@@ -35,13 +35,13 @@ pub enum Value {
     F64(f64),
 }
 
-/// A Rust primitive that carries an elementary IEC value.
+/// A Rust primitive that represents an elementary IEC value.
 pub trait Scalar: Copy + Default + PartialEq + PartialOrd + Debug + 'static {
     const LANE: Repr;
     /// Zero, or FALSE.
     const ZERO: Self;
     fn into_value(self) -> Value;
-    /// `None` when `value` is of another repr.
+    /// `None` if `value` has another repr.
     fn from_value(value: Value) -> Option<Self>;
 }
 
@@ -83,7 +83,7 @@ macro_rules! reprs {
             }
 
             /// Reads a value of `repr` from the start of `bytes`, in the machine's byte order.
-            /// Zero where there are too few, which is a mistake of the caller's.
+            /// Zero if there are too few bytes, which is a mistake of the caller.
             pub fn read(repr: Repr, bytes: &[u8]) -> Self {
                 debug_assert!(bytes.len() >= repr.size() as usize);
                 match repr {
@@ -92,7 +92,7 @@ macro_rules! reprs {
             }
 
             /// Writes the value to the start of `bytes`, in the machine's byte order.
-            /// Nothing where there are too few, which is a mistake of the caller's.
+            /// Writes nothing if there are too few bytes, which is a mistake of the caller.
             pub fn write(self, bytes: &mut [u8]) {
                 debug_assert!(bytes.len() >= self.repr().size() as usize);
                 match self {
@@ -215,7 +215,7 @@ impl Repr {
 }
 
 impl Value {
-    /// The number of an integer or BOOL value.
+    /// An integer or BOOL value as a number.
     pub fn as_integer(self) -> Option<i128> {
         Some(match self {
             Self::Bool(it) => i128::from(it),

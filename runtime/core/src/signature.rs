@@ -5,17 +5,17 @@ use crate::{Class, Elementary, Repr};
 /// The signature of a standard function.
 #[derive(Clone, Copy, Debug)]
 pub struct Signature {
-    /// The name it is called by; one that starts with `_` is the compiler's own.
+    /// The name by which it is called; a name that starts with `_` is for the compiler only.
     pub name: &'static str,
     pub parameters: &'static [Parameter],
     /// Whether IN3, IN4, … may follow the last parameter.
     pub extensible: bool,
     pub result: Kind,
-    /// What `T` may be.
+    /// The types that `T` may be.
     pub class: Class,
 }
 
-/// One parameter: its name in the standard's tables, and what it takes.
+/// One parameter: its name in the standard's tables, and what it accepts.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
     pub name: &'static str,
@@ -34,12 +34,12 @@ pub enum Kind {
     String,
     /// A WSTRING of any length.
     Wstring,
-    /// A STRING or a WSTRING of any length: the same for all such parameters in a call.
+    /// A STRING or a WSTRING of any length, the same kind for all such parameters in a call.
     AnyString,
 }
 
 impl Kind {
-    /// The repr of a parameter that is neither `T` nor a string. Where any integer is accepted, a LINT is passed.
+    /// The repr of a parameter that is neither `T` nor a string. If any integer is accepted, it is passed as a LINT.
     pub const fn repr(self) -> Option<Repr> {
         match self {
             Self::Is(ty) => Some(ty.repr()),
@@ -49,7 +49,7 @@ impl Kind {
     }
 }
 
-/// A signature as the rows of the tables write it.
+/// A signature, from the notation of the tables' rows.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! signature {
@@ -79,7 +79,7 @@ macro_rules! signature {
     };
 }
 
-/// The kind that a row's word means.
+/// The kind that a word in a row stands for.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! kind {
@@ -157,7 +157,7 @@ macro_rules! kind {
     };
 }
 
-/// The class that a row's word means.
+/// The class that a word in a row stands for.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! class {
@@ -193,7 +193,7 @@ macro_rules! class {
     };
 }
 
-/// The Rust type that carries a word of a row: in a shim, or in the interpreter.
+/// The Rust type for a word in a row: in a shim, or in the interpreter.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! carried {

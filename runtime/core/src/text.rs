@@ -45,7 +45,7 @@ impl<const N: usize, U: Unit> Text<N, U> {
         text
     }
 
-    /// What `write` puts into its destination.
+    /// The string that `write` writes.
     #[inline]
     pub fn build(write: impl FnOnce(&mut Destination<'_, U>)) -> Self {
         let mut text = Self::default();
@@ -64,7 +64,7 @@ impl<const N: usize, U: Unit> Text<N, U> {
         self.units.get(..usize::from(self.len)).unwrap_or(&self.units)
     }
 
-    /// Becomes the start of `units`, as much as fits.
+    /// Replaces the string with the start of `units`, as much as fits.
     #[inline]
     pub fn assign(&mut self, units: &[U]) {
         self.destination().write(units);
@@ -93,19 +93,19 @@ impl<const N: usize, U: Unit> Text<N, U> {
         }
     }
 
-    /// Empties the string, for writing it anew.
+    /// Empties the string, and returns it as a destination for a new value.
     #[inline]
     pub fn destination(&mut self) -> Destination<'_, U> {
         Destination::new(&mut self.len, &mut self.units)
     }
 
-    /// The string as it is, for writing after its end.
+    /// Returns the string as a destination for writing after its end.
     #[inline]
     pub fn end(&mut self) -> Destination<'_, U> {
         Destination::at_end(&mut self.len, &mut self.units)
     }
 
-    /// Puts as much of `units` as still fits after the string's end.
+    /// Appends as much of `units` as still fits.
     ///
     /// ```
     /// let mut text = staunch_runtime::Text::<5>::new(b"abc");
@@ -138,7 +138,7 @@ impl<const N: usize, U: Unit> fmt::Debug for Text<N, U> {
     }
 }
 
-/// Bytes that are not UTF-8, and surrogates without their other half, show as U+FFFD.
+/// Bytes that are not UTF-8, and unpaired surrogates, are shown as U+FFFD.
 impl<const N: usize, U: Unit> fmt::Display for Text<N, U> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         U::display(self.as_units(), f)
@@ -148,25 +148,25 @@ impl<const N: usize, U: Unit> fmt::Display for Text<N, U> {
 /// Where a string function writes: the length and the units of a string of any capacity. Each writes after the existing text,
 /// so that several make one string.
 ///
-/// The units past a string's length are zero. So those that it no longer has become zero when the
+/// The units past a string's length are zero. So units that no longer belong to it are set to zero when the
 /// writing ends; the others are not touched.
 #[derive(Debug)]
 pub struct Destination<'a, U: Unit = u8> {
     len: &'a mut u16,
     units: &'a mut [U],
-    /// How long the string was.
+    /// The previous length of the string.
     before: u16,
 }
 
 impl<'a, U: Unit> Destination<'a, U> {
-    /// An empty string in the place of the one of this length.
+    /// A destination that replaces the string of this length.
     #[inline]
     pub fn new(len: &'a mut u16, units: &'a mut [U]) -> Self {
         let before = core::mem::take(len);
         Self { len, units, before }
     }
 
-    /// A string that is there already.
+    /// A destination that appends to the existing string.
     #[inline]
     pub fn at_end(len: &'a mut u16, units: &'a mut [U]) -> Self {
         Self { len, units, before: 0 }
@@ -205,7 +205,7 @@ impl<U: Unit> Drop for Destination<'_, U> {
     }
 }
 
-/// The order of two strings, unit by unit: -1, 0 or 1. A string comes after those it begins with.
+/// The order of two strings, unit by unit: -1, 0 or 1. A string comes after its own prefixes.
 ///
 /// ```
 /// use staunch_runtime::text::compare;
@@ -270,7 +270,7 @@ pub fn concat<U: Unit>(a: &[U], b: &[U], out: &mut Destination<'_, U>) {
     out.write(b);
 }
 
-/// `INSERT`: puts `inserted` after the unit at `position`; 0 puts it in front.
+/// `INSERT`: puts `inserted` after the unit at `position`; position 0 is before the first unit.
 #[inline]
 pub fn insert<U: Unit>(text: &[U], inserted: &[U], position: i64, out: &mut Destination<'_, U>) {
     let (before, after) = split(text, position);
@@ -305,20 +305,20 @@ fn unit_at<U: Unit>(text: &[U], position: i64) -> U {
     usize::try_from(position).ok().and_then(|it| text.get(it)).copied().unwrap_or(U::ZERO)
 }
 
-/// A STRING's byte after the first `position` ones; 0 where the text has ended.
+/// The byte of a STRING at `position`, counted from 0; 0 after its end.
 #[inline]
 pub fn char_at(text: &[u8], position: i64) -> u8 {
     unit_at(text, position)
 }
 
-/// A WSTRING's code unit after the first `position` ones; 0 where the text has ended.
+/// The code unit of a WSTRING at `position`, counted from 0; 0 after its end.
 #[inline]
 pub fn wchar_at(text: &[u16], position: i64) -> u16 {
     unit_at(text, position)
 }
 
-/// A STRING with another byte after the first `position` ones: a 0 ends it there, another one beyond its end lengthens
-/// it, with zeros in between, as far as there is room for all of it.
+/// A STRING with another byte at `position`, counted from 0: a zero ends the string there, and another byte beyond its end
+/// lengthens it, with zeros in between, if there is room for all of it.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::with_char};
@@ -333,7 +333,7 @@ pub fn with_char(text: &[u8], position: i64, byte: u8, out: &mut Destination<'_>
     with_unit(text, position, byte, out);
 }
 
-/// The same of a WSTRING and a code unit.
+/// The same for a WSTRING and a code unit.
 #[inline]
 pub fn with_wchar(text: &[u16], position: i64, unit: u16, out: &mut Destination<'_, u16>) {
     with_unit(text, position, unit, out);

@@ -8,12 +8,14 @@ mod strips;
 pub use strips::Strips;
 
 impl Context {
-    /// Turns that a loop may have without taking any, where their number is known before the first one, and no loop is
-    /// in it.
+    /// A loop with at most this many turns takes none from the budget, if their number is known before the first one and the loop
+    /// contains no other loop.
     pub const FREE_TURNS: u64 = 1024;
 
-    /// Takes all turns of a loop whose counter goes from `first` by `step`, which is not 0, to `last`.
-    /// [`FaultKind::LoopBudget`] where they do not suffice: then none is taken.
+    /// Takes all turns of a loop whose counter goes from `first` to `last` by `step`, which is not 0.
+    ///
+    /// # Errors
+    /// [`FaultKind::LoopBudget`] if not enough turns are left: then none is taken.
     ///
     /// ```
     /// use staunch_runtime::{Context, FaultKind};
@@ -31,7 +33,7 @@ impl Context {
         }
     }
 
-    /// [`Context::take_turns`] of a loop that continues while its counter is before `bound`: below it, or above it where the step
+    /// [`Context::take_turns`] for a loop that continues while its counter is before `bound`: below it, or above it if the step
     /// is negative.
     #[inline]
     pub fn take_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<(), FaultKind> {
@@ -41,7 +43,7 @@ impl Context {
         }
     }
 
-    /// [`Context::take_turns`] where they are more than [`Context::FREE_TURNS`]; else it takes none.
+    /// [`Context::take_turns`] if there are more than [`Context::FREE_TURNS`]; otherwise it takes none.
     ///
     /// ```
     /// use staunch_runtime::{Context, FaultKind};
@@ -55,20 +57,20 @@ impl Context {
         if Self::has_few_turns(first, last, step) { Ok(()) } else { self.take_turns(first, last, step) }
     }
 
-    /// [`Context::take_turns_before`] where they are more than [`Context::FREE_TURNS`]; else it takes none.
+    /// [`Context::take_turns_before`] if there are more than [`Context::FREE_TURNS`]; otherwise it takes none.
     #[inline]
     pub fn take_many_turns_before<T: Integer>(&self, first: T, bound: T, step: i128) -> Result<(), FaultKind> {
         if Self::has_few_turns_before(first, bound, step) { Ok(()) } else { self.take_turns_before(first, bound, step) }
     }
 
-    /// Whether a loop whose counter goes from `first` by `step`, which is not 0, to `last` has no more than
-    /// [`Context::FREE_TURNS`].
+    /// Whether a loop whose counter goes from `first` to `last` by `step`, which is not 0, has at most
+    /// [`Context::FREE_TURNS`] turns.
     #[inline]
     pub fn has_few_turns<T: Integer>(first: T, last: T, step: i128) -> bool {
         is_below(first, last, step, few(step))
     }
 
-    /// [`Context::has_few_turns`] of a loop that continues while its counter is before `bound`.
+    /// [`Context::has_few_turns`] for a loop that continues while its counter is before `bound`.
     #[inline]
     pub fn has_few_turns_before<T: Integer>(first: T, bound: T, step: i128) -> bool {
         is_below(first, bound, step, few(step).saturating_add(1))
@@ -85,7 +87,7 @@ impl Context {
     }
 }
 
-/// How many turns come after the first one; `None` where there is none.
+/// The number of turns after the first one; `None` for a loop without turns.
 #[inline]
 fn further<T: Integer>(first: T, last: T, step: i128) -> Option<u64> {
     way(first, last, step).map(|it| it / size(step))
@@ -96,14 +98,14 @@ fn further_before<T: Integer>(first: T, bound: T, step: i128) -> Option<u64> {
     way(first, bound, step)?.checked_sub(1).map(|it| it / size(step))
 }
 
-/// From `first` to `last`, if that is not past it.
+/// The distance from `first` to `last`, if `first` is not past it.
 #[inline]
 fn way<T: Integer>(first: T, last: T, step: i128) -> Option<u64> {
     let (low, high) = if step > 0 { (first, last) } else { (last, first) };
     (low <= high).then(|| high.extended().wrapping_sub(low.extended()))
 }
 
-/// Whether the way from `first` to `last` is shorter, or there is none.
+/// Whether the distance from `first` to `last` is shorter, or negative.
 #[inline]
 fn is_below<T: Integer>(first: T, last: T, step: i128, length: u64) -> bool {
     if T::BITS > 32 {
@@ -116,13 +118,13 @@ fn is_below<T: Integer>(first: T, last: T, step: i128, length: u64) -> bool {
     way ^ SIGN < length ^ SIGN
 }
 
-/// What [`Context::FREE_TURNS`] steps come to.
+/// The length of [`Context::FREE_TURNS`] steps.
 #[inline]
 fn few(step: i128) -> u64 {
     size(step).saturating_mul(Context::FREE_TURNS)
 }
 
-/// A step's magnitude, which a counter's type holds.
+/// The magnitude of a step, which fits the counter's type.
 #[inline]
 fn size(step: i128) -> u64 {
     u64::try_from(step.unsigned_abs()).unwrap_or(u64::MAX).max(1)

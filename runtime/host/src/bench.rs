@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 use std::time::{Duration, Instant};
 
-/// A batch is long enough that reading the clock does not count.
+/// A batch is so long that the time for reading the clock does not matter.
 const BATCH: Duration = Duration::from_micros(50);
 const LARGEST_BATCH: u64 = 1 << 16;
 /// Measuring takes this long unless the number of scans is given.
@@ -35,7 +35,7 @@ pub struct BenchOptions {
     pub stimulus: Option<PathBuf>,
 }
 
-/// Nanoseconds per scan, of batches of scans, without what measuring them takes.
+/// Nanoseconds per scan, measured in batches, without the time that measuring takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
     /// Scans that were measured.
@@ -43,7 +43,7 @@ pub struct Timing {
     pub min: f64,
     pub median: f64,
     pub p99: f64,
-    /// What a scan of an empty program takes, called in the same way after its inputs are written: it is not in the other figures.
+    /// The time of a scan of an empty program, called in the same way after its inputs are written. It is not included in the other figures.
     pub overhead: f64,
 }
 
@@ -75,7 +75,7 @@ impl FromStr for Timing {
     }
 }
 
-/// Times scans alone, on the monotonic clock. What the calls themselves take, which is measured with an empty program, is taken off.
+/// Measures only the scans, on the monotonic clock. The time of the calls themselves, which is measured with an empty program, is subtracted.
 pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Result<Timing, Error> {
     let running = running(map, options.program.as_deref())?;
     machine.init();
@@ -100,7 +100,7 @@ pub fn bench(machine: &mut Compiled, map: &Map, options: &BenchOptions) -> Resul
     Ok(Timing { scans, min: at(0.0), median: at(0.5), p99: at(0.99), overhead })
 }
 
-/// What a scan takes of a program that does nothing.
+/// The time of a scan of a program that does nothing.
 fn overhead(
     empty: &mut Compiled,
     map: &Map,
@@ -228,7 +228,7 @@ impl<'a> Bench<'a> {
         end.map(|()| took)
     }
 
-    /// Scans of one program: as little as can be is between them.
+    /// Scans of one program, with as little as possible between them.
     fn only(&mut self, count: u64, program: Due) -> Result<(), Error> {
         for _ in 0..count {
             self.write();

@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// `staunch_init`: writes the initial values over all of the state.
 pub type Init = unsafe extern "C" fn(state: *mut u8);
-/// `staunch_scan`: one scan of an instance; 0, or a fault's code. Every variable of the state has a
-/// value of its type, before and after.
+/// `staunch_scan`: one scan of an instance; returns 0, or a fault's code. Every variable of the state has a
+/// valid value of its type, before and after.
 pub type Scan = unsafe extern "C" fn(state: *mut u8, cx: *const Context, instance: u32) -> u64;
 
 /// The entry points of a compiled program.
@@ -56,7 +56,7 @@ pub struct Compiled {
     number: u64,
 }
 
-/// A state that a [`Compiled`] had, which it can have again.
+/// A state of a [`Compiled`], which can be restored.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
     /// The machine's number.
@@ -73,7 +73,7 @@ impl Snapshot {
 /// Machines made so far: each has a number of its own.
 static MACHINES: AtomicU64 = AtomicU64::new(0);
 
-/// Bytes that are whole values of their variables' types.
+/// Bytes that are complete, valid values of their variables' types.
 struct Ready {
     offset: usize,
     bytes: Vec<u8>,
@@ -94,7 +94,7 @@ impl Compiled {
         compiled
     }
 
-    /// A machine of the same state, whose scans do nothing.
+    /// A machine with the same state, whose scans do nothing.
     pub(crate) fn without_code(&self) -> Self {
         unsafe extern "C" fn init(_: *mut u8) {}
         unsafe extern "C" fn scan(_: *mut u8, _: *const Context, _: u32) -> u64 {
@@ -112,15 +112,15 @@ impl Compiled {
         }
     }
 
-    /// The state as it is, for [`restore`](Self::restore).
+    /// The present state, for [`restore`](Self::restore).
     pub fn snapshot(&self) -> Snapshot {
         Snapshot { owner: self.number, bytes: self.state().into() }
     }
 
-    /// Goes back to a state that this machine had: less work than to [write](Machine::write) it.
+    /// Restores a state that this machine had: less work than [writing](Machine::write) it.
     ///
     /// # Panics
-    /// If the snapshot is of another machine.
+    /// If the snapshot belongs to another machine.
     #[inline]
     pub fn restore(&mut self, snapshot: &Snapshot) {
         assert_eq!(snapshot.owner, self.number, "the state of another machine");
@@ -134,7 +134,7 @@ impl Compiled {
     /// Keeps writes for [`apply`](Self::apply), each a list of offsets and bytes.
     ///
     /// # Panics
-    /// If bytes are a part of a value.
+    /// If bytes are only part of a value.
     pub(crate) fn prepare(&mut self, lists: &[Vec<(usize, Vec<u8>)>]) {
         let mut state = self.state().to_vec();
         let mut ready = |(offset, bytes): &(usize, Vec<u8>)| {

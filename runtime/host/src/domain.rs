@@ -1,5 +1,5 @@
-//! What each byte of a state may hold. Bytes from outside (a stimulus, a retain file, a user's own
-//! host) pass through here, so that compiled code finds values of its variables' types.
+//! The valid values of each byte of a state. Bytes from outside (a stimulus, a retain file, a user's own
+//! host) pass through here, so that compiled code finds only valid values of its variables' types.
 
 use crate::map::{Array, Map, Type, Variable};
 use staunch_runtime::time::MILLISECOND;
@@ -11,8 +11,9 @@ use std::ops::Range;
 ///
 /// Written bytes become the nearest value of their variable's type: a BOOL that is not 0 is TRUE, a
 /// string's length is at most its capacity and the bytes after its end are 0, a number of a subrange
-/// is moved to its nearer bound, a TIME to the milliseconds that the dialect has, a date is moved to its midnight and a time of day into its day, and bytes that belong to no variable are 0. A number of an
-/// enumeration stays, also where it has no name, and so does a REAL, also where it is not a number.
+/// becomes its nearer bound, a TIME is cut to the milliseconds of the dialect, a date is moved to its midnight and a time of day
+/// into its day, and bytes that belong to no variable are 0. The number of an enumeration stays, even if it has no name, and so
+/// does a REAL, even if it is NaN.
 #[derive(Clone, Debug)]
 pub struct Domain {
     size: usize,
@@ -22,7 +23,7 @@ pub struct Domain {
 
 #[derive(Clone, Debug)]
 enum Node {
-    /// Any bytes are a value.
+    /// All bytes are valid.
     Any,
     Bool,
     /// A day, which is its midnight.

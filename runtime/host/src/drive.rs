@@ -1,5 +1,5 @@
-//! A program scan by scan, without stimulus and trace, that can go back to where it was: what a
-//! search drives. Times, tasks and restarts are those of [`run`](crate::run()).
+//! Runs a program scan by scan, without stimulus and trace, and can return to an earlier point, as a
+//! search needs. Times, tasks and restarts are those of [`run`](crate::run()).
 
 use crate::map::Map;
 use crate::schedule::{Due, Schedule};
@@ -16,7 +16,7 @@ pub struct Drive {
     fresh: Vec<bool>,
 }
 
-/// A place in time that a [`Drive`] can go back to.
+/// A point in time to which a [`Drive`] can return.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bookmark {
     /// For each program, when it is due.
@@ -37,23 +37,23 @@ impl Drive {
         self.schedule.next()
     }
 
-    /// The least time from scan to scan of a program.
+    /// The shortest time between two scans of a program.
     pub fn shortest_period(&self) -> Time {
         self.schedule.shortest_period()
     }
 
-    /// Variables that the event does not keep start again. Inputs must be written again.
+    /// Variables that the event does not keep are initialised again. Inputs must be written again.
     pub fn start_again(&mut self, event: Event, machine: &mut dyn Machine) {
         self.start.again(event, machine);
         self.fresh.fill(true);
     }
 
-    /// Whether an event keeps anything, so that it is more than a new start.
+    /// Whether an event keeps anything, so that it differs from a new start.
     pub fn keeps_anything(&self, event: Event) -> bool {
         !self.start.kept(event).is_empty()
     }
 
-    /// Whether two events keep the same.
+    /// Whether two events keep the same variables.
     pub fn are_alike(&self, a: Event, b: Event) -> bool {
         self.start.kept(a) == self.start.kept(b)
     }
@@ -73,7 +73,7 @@ impl Drive {
         self.scan_by(|instance, cx| machine.scan(instance, cx))
     }
 
-    /// The next scan, of programs that something else runs.
+    /// Advances to the next scan; the caller runs the programs.
     pub fn scan_by(&mut self, mut run: impl FnMut(usize, &Context) -> Result<(), Fault>) -> Result<(), Fault> {
         let now = self.schedule.next();
         self.schedule.advance(now, false);
@@ -93,7 +93,7 @@ impl Drive {
         self.fresh.copy_from_slice(&bookmark.fresh);
     }
 
-    /// What decides of the time to come, but for when it is: for each program how long until it is
+    /// The state of the schedule, independent of the present time: for each program how long until it is
     /// due, and whether it has not run since the start.
     pub fn phases(&self) -> impl Iterator<Item = (Time, bool)> {
         let now = self.schedule.next();

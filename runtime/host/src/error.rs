@@ -9,7 +9,7 @@ use std::time::Duration;
 
 #[derive(Debug)]
 pub enum Error {
-    /// The command line asks for something that is not there, or contradicts itself.
+    /// The command line names something that does not exist, or contradicts itself.
     Usage(String),
     /// A place in a stimulus file: 1-based line, and column in characters.
     Stimulus { path: PathBuf, line: usize, column: usize, text: String },
@@ -17,15 +17,15 @@ pub enum Error {
     Retain { path: PathBuf, text: String },
     /// A file that cannot be read or written.
     File { path: PathBuf, doing: &'static str, error: io::Error },
-    /// The reader of the output has gone away: no mistake of anyone.
+    /// The reader of the output has closed it, which is not a mistake.
     ClosedPipe,
-    /// The program's map does not read: program and host are of different versions.
+    /// The program's map cannot be read: program and host have different versions.
     Map { line: usize, text: String },
     /// The program faulted.
     Fault { fault: Fault, scan: u64, instance: String, path: String },
-    /// A scan had not ended when the next one was due, where that ends a run in real time. Times in nanoseconds.
+    /// A scan had not ended when the next one was due, in a run in real time that ends then. Times in nanoseconds.
     Overrun { scan: u64, instance: String, late: Time, took: Time, period: Time },
-    /// A server of inputs and outputs does not answer, where that ends a run in real time.
+    /// A server of inputs and outputs does not answer, in a run in real time that ends then.
     Connection { name: String, trouble: String },
 }
 

@@ -10,7 +10,7 @@ use crate::signal;
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// The main function of a built executable: runs its program as its arguments say.
+/// The main function of a built executable: runs its program according to its arguments.
 pub fn main(code: Code) -> ExitCode {
     ExitCode::from(main_with(code, std::env::args_os()))
 }
@@ -61,7 +61,7 @@ pub(crate) fn version(map: &Map) -> String {
     format!("{} ({}), compiled by Staunch {}\n", title(map, &all), map.files.join(", "), map.compiler)
 }
 
-/// A reader that has gone away wants no help.
+/// A reader that has closed the output needs no help text.
 fn print(text: &str) -> u8 {
     use std::io::Write;
     let _ = std::io::stdout().write_all(text.as_bytes());

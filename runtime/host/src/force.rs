@@ -1,11 +1,11 @@
-//! Variables that are forced: they have one value before and after each scan, whatever the program, its inputs and the stimulus
+//! Forced variables: they have a fixed value before and after each scan, whatever the program, its inputs and the stimulus
 //! write to them.
 
 use crate::map::Map;
 use crate::stimulus::Write;
 use crate::{Error, Machine, path};
 
-/// The values, in the order in which they are asked for.
+/// The values, in the order of the command line.
 #[derive(Debug, Default)]
 pub(crate) struct Forces {
     names: Vec<String>,
@@ -50,7 +50,7 @@ impl Forces {
         self.writes.iter().for_each(|it| it.put(machine));
     }
 
-    /// Whoever sees the run must know that its values are not the program's.
+    /// A note, so that everyone who sees the run knows that these values are not the program's.
     pub fn note(&self) -> Option<String> {
         let names: Vec<String> = self.names.iter().map(|it| format!("`{it}`")).collect();
         let verb = if names.len() == 1 { "is" } else { "are" };

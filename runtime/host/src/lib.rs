@@ -1,8 +1,8 @@
 //! Runs a compiled program: scans on a virtual or the real clock, stimulus, trace, retained
 //! variables. What `staunch run` does, and what a built executable does on its own.
 //!
-//! It depends on the runtime alone: the command carries its source, to build executables where
-//! no package registry can be reached.
+//! It depends only on the runtime: the command contains its source, so that executables can be built
+//! without access to a package registry.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 #![allow(unexpected_cfgs, reason = "cargo-fuzz sets `fuzzing`")]
 
@@ -89,19 +89,19 @@ use staunch_runtime::{Context, Fault, Time};
 /// A program that can be scanned: its state as bytes, laid out as its map says.
 pub trait Machine {
     fn state(&self) -> &[u8];
-    /// Writes bytes into the state, as its [`Domain`] does: whatever they are, each variable then
-    /// has a value of its type.
+    /// Writes bytes into the state, through its [`Domain`]: whatever they are, each variable then
+    /// has a valid value of its type.
     ///
     /// # Panics
     /// If the state ends before the bytes do.
     fn write(&mut self, offset: usize, bytes: &[u8]);
     /// Writes the initial values over all of the state.
     fn init(&mut self);
-    /// An event has started the program again: what it does not keep is initial.
+    /// An event has started the program again: variables that it does not keep have their initial values.
     fn starts_again(&mut self, _: Event) {}
-    /// The scan of this number comes, at a time of the run. Only where [`Options::debugged`] says so.
+    /// The scan with this number is next, at a time of the run. Called only if [`Options::debugged`] is set.
     fn scan_begins(&mut self, _number: u64, _time: Time) {}
-    /// Whether the run ends with this scan. Only where [`Options::debugged`] says so.
+    /// Whether the run ends with this scan. Called only if [`Options::debugged`] is set.
     fn ends(&mut self) -> bool {
         false
     }

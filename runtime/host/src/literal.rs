@@ -272,12 +272,12 @@ mod tests {
         assert_eq!(error("c.CV", "UINT#5"), "`UINT#5` is not an INT");
         assert_eq!(error("level", "11"), "`11` is outside the subrange 0..10");
         assert_eq!(error("speed", "1e99"), "`1e99` does not fit REAL");
-        assert_eq!(error("c.CV", "1__0"), "`1__0` is not an INT: `_` is only between two digits");
-        assert_eq!(error("speed", "1_.5"), "`1_.5` is not a REAL: `_` is only between two digits");
+        assert_eq!(error("c.CV", "1__0"), "`1__0` is not an INT: `_` is allowed only between two digits");
+        assert_eq!(error("speed", "1_.5"), "`1_.5` is not a REAL: `_` is allowed only between two digits");
         assert_eq!(error("speed", "infinity"), "`infinity` is not a REAL");
         assert_eq!(
             error("pause", "T#1_s"),
-            "`T#1_s` is not a TIME: `_` is only between two digits, or between two units"
+            "`T#1_s` is not a TIME: `_` is allowed only between two digits, or between two units"
         );
         assert_eq!(
             error("pause", "T#1.5s200ms"),

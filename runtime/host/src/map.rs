@@ -1,4 +1,4 @@
-//! The map: which variable lies where. The compiler writes it as text, one record a line.
+//! The map: which variable is where. The compiler writes it as text, one record per line.
 
 use crate::Error;
 use crate::pin::Pin;

@@ -1,5 +1,5 @@
-//! What a program logs, as by `ADSLOGSTR`: the compiler keeps the last messages in variables, which are read after each
-//! scan.
+//! Messages that a program logs, for example with `ADSLOGSTR`: the compiler keeps the last ones in variables, which are read
+//! after each scan.
 
 use crate::error::tell;
 use crate::json::quote;
@@ -46,7 +46,7 @@ impl Message {
     }
 }
 
-/// The messages of a program that have been told.
+/// The messages of a program, and how many of them have been reported.
 #[derive(Debug, Default)]
 pub(crate) struct Messages {
     pub is_there: bool,

@@ -1,4 +1,4 @@
-//! Variables by the names that people use for them.
+//! Finds variables by the names that people use for them.
 
 use crate::map::{Map, Section, Type, Variable};
 
@@ -142,7 +142,7 @@ fn steps(text: &str) -> Option<Vec<Step<'_>>> {
     }
 }
 
-/// What is looked for in the state: where it is, how large it is, and perhaps what it is.
+/// The wanted part of the state: where it is, how large it is, and perhaps its type.
 #[derive(Clone, Copy)]
 struct Wanted {
     offset: usize,

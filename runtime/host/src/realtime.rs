@@ -1,7 +1,7 @@
-//! A run in real time: when its scans begin, what the system is asked for, and how well the programs kept their time.
+//! A run in real time: when its scans begin, what it requests from the system, and how punctual the programs were.
 //!
-//! One thread runs all programs, without pre-emption: they share their variables, and none sees another in the midst of a
-//! scan. Whenever a scan has ended, the program of the highest priority among those that are due is next.
+//! One thread runs all programs, without preemption: they share their variables, and none sees another in the middle of a
+//! scan. Whenever a scan has ended, the program with the highest priority among those that are due is next.
 
 mod figures;
 mod histogram;
@@ -23,26 +23,26 @@ use std::path::PathBuf;
 use std::time::Duration;
 use watchdog::Watchdog;
 
-/// How a run in real time keeps its time.
+/// Settings of a run in real time.
 #[derive(Clone, Debug, Default)]
 pub struct Pacing {
-    /// From 1 to [`HIGHEST_PRIORITY`](Self::HIGHEST_PRIORITY): the scans run before all else of a lower priority, by SCHED_FIFO, with
-    /// all memory locked. `None` is as any other process.
+    /// From 1 to [`HIGHEST_PRIORITY`](Self::HIGHEST_PRIORITY): the scans run before everything with a lower priority, with SCHED_FIFO and
+    /// all memory locked. `None` is the priority of an ordinary process.
     pub priority: Option<u8>,
     /// The processor that the scans run on.
     pub cpu: Option<usize>,
     pub overrun: Overrun,
-    /// How long no scan may end before the process does, in nanoseconds.
+    /// If no scan ends for this long, in nanoseconds, the process ends.
     pub watchdog: Option<Time>,
-    /// A device that restarts the machine where no scan ends, as `/dev/watchdog`.
+    /// A device that restarts the machine if no scan ends, such as `/dev/watchdog`.
     pub watchdog_device: Option<PathBuf>,
 }
 
 impl Pacing {
-    /// The watchdog has one more, and 99 is the highest of the system.
+    /// The watchdog's priority is one higher, and 99 is the highest of the system.
     pub const HIGHEST_PRIORITY: u8 = 98;
 
-    /// Something is asked for that only a run in real time has.
+    /// Whether a setting is used that only a run in real time has.
     pub fn is_asked_for(&self) -> bool {
         let Self { priority, cpu, overrun, watchdog, watchdog_device } = self;
         let watched = watchdog.is_some() || watchdog_device.is_some();
@@ -53,12 +53,12 @@ impl Pacing {
 /// What happens after a scan that has not ended when the next one is due. It is counted in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Overrun {
-    /// The next scan begins at once, and those for which a whole period has passed are left out.
+    /// The next scan begins at once, and scans for which a whole period has passed are skipped.
     #[default]
     Skip,
-    /// As many scans follow at once as are due.
+    /// All scans that are due follow at once.
     CatchUp,
-    /// It ends the run as a fault does.
+    /// It ends the run, like a fault.
     Fault,
 }
 
@@ -76,7 +76,7 @@ impl Overrun {
 /// A signal may arrive just before a sleep, so none is longer than this.
 const NAP: Duration = Duration::from_millis(50);
 
-/// A run in real time on its way.
+/// A run in real time in progress.
 pub(crate) struct RealTime {
     /// What the clock showed at the program's time 0.
     start: Duration,
@@ -145,21 +145,21 @@ impl RealTime {
         Scanned { faults: overran && self.overrun == Overrun::Fault, took: ended.saturating_sub(began) }
     }
 
-    /// What the run came to. The watchdog is gone after it.
+    /// Ends the run, with its watchdog, and returns its result.
     pub fn end(self) -> Figures {
         self.figures
     }
 }
 
-/// What a scan came to.
+/// The result of a scan.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scanned {
-    /// It was too long, and ends the run.
+    /// It took too long, and ends the run.
     pub faults: bool,
     pub took: Time,
 }
 
-/// Asks the system for what is wanted of it.
+/// Requests the settings from the system.
 fn ask(pacing: &Pacing) -> Result<(), Error> {
     system::wake_on_time();
     if let Some(cpu) = pacing.cpu {

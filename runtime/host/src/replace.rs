@@ -1,5 +1,5 @@
-//! Files that are written. A file appears under its name as a whole: it is made next to it and renamed, so that
-//! a crash or a full disk leaves what was there before. A pipe or a device is written
+//! Files that are written. A file appears under its name only when it is complete: it is written under a temporary name next
+//! to it and renamed, so that a crash or a full disk leaves the old file intact. A pipe or a device is written
 //! directly.
 
 use std::ffi::OsString;
@@ -8,7 +8,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// A new file that takes the place of what has its name once it is [kept](Self::keep); dropped before, it is gone.
+/// A new file that replaces the file with its name once it is [kept](Self::keep); if it is dropped before, it is deleted.
 #[derive(Debug)]
 pub struct Replacement {
     target: PathBuf,
@@ -84,7 +84,7 @@ fn straight(path: &Path, target: PathBuf) -> io::Result<(Replacement, File)> {
     Ok((Replacement { target, aside: PathBuf::new() }, open(path)?))
 }
 
-/// A pipe that nobody reads lets its writer wait: that is said before.
+/// A pipe without a reader blocks its writer, so a message is shown first.
 fn open(path: &Path) -> io::Result<File> {
     if fs::metadata(path).is_ok_and(|it| is_pipe(&it)) && !is_straight(path) {
         crate::error::tell(format_args!("note: {} is a pipe: waiting until it is read", path.display()));
@@ -114,10 +114,10 @@ fn open_pipe(path: &Path) -> io::Result<File> {
 
 #[cfg(not(any(target_os = "linux", target_os = "android")))]
 fn open_pipe(_: &Path) -> io::Result<File> {
-    Err(io::Error::other("it is a pipe, which may make the program wait"))
+    Err(io::Error::other("it is a pipe, which could block the program"))
 }
 
-/// Opens a file to read it. A pipe that nobody writes lets its reader wait: that is said before.
+/// Opens a file for reading. A pipe without a writer blocks its reader, so a message is shown first.
 pub fn open_to_read(path: &Path) -> io::Result<File> {
     let metadata = fs::metadata(path)?;
     if metadata.is_dir() {
@@ -172,7 +172,7 @@ pub fn followed(path: &Path) -> io::Result<PathBuf> {
         let Ok(next) = fs::read_link(&path) else { return Ok(path) };
         path = path.parent().unwrap_or(Path::new("")).join(next);
     }
-    Err(io::Error::other("its symbolic links lead in a circle"))
+    Err(io::Error::other("its symbolic links form a loop"))
 }
 
 /// What identifies a file, by whatever name it is reached. A file that does not exist yet is its
@@ -209,7 +209,7 @@ fn identity(path: &Path) -> Option<PathBuf> {
 /// A file that a call names, and its role in it: `the source`, `--trace`.
 pub type Role<'a> = (&'a str, &'a Path);
 
-/// Makes sure that no output takes the place of an input or of another output.
+/// Checks that no output replaces an input or another output.
 pub fn keep_apart(inputs: &[Role<'_>], outputs: &[Role<'_>]) -> Result<(), String> {
     for (number, (what, path)) in outputs.iter().enumerate() {
         let Some(own) = identity(path) else { continue };

@@ -1,6 +1,6 @@
 //! Variables that keep their values over a restart, in memory and in a file.
 //!
-//! A type is written with all that its bytes mean: an enumeration with its values, a subrange with its
+//! A type is written with everything that gives its bytes a meaning: an enumeration with its values, a subrange with its
 //! bounds, a standard block with its pins.
 
 mod content;
@@ -36,13 +36,13 @@ const LONGEST: u64 = 16 << 20;
 #[derive(Debug)]
 pub(crate) struct Retention {
     path: PathBuf,
-    /// What of the state is kept, in the order of the file.
+    /// The parts of the state that are kept, in the order of the file.
     kept: Kept,
-    /// What is kept as it was after the last whole scan, and the clock then: a scan that faults, or one that the
-    /// power ends, leaves nothing of itself.
+    /// The kept values after the last whole scan, and the clock at that time: a scan that faults, or that a power cut
+    /// interrupts, leaves no trace.
     whole: Vec<u8>,
     clock: Time,
-    /// The fault that ended a run, since which none has ended well; empty without one.
+    /// The fault that ended a run, if no run has ended normally since; otherwise empty.
     fault: String,
     saving: Saving,
 }
@@ -51,19 +51,19 @@ pub(crate) struct Retention {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ending<'a> {
     Well,
-    /// By the fault that the text names.
+    /// With the fault that the text names.
     Fault(&'a str),
-    /// Before it was done, but not by the program: what was known of faults stays.
+    /// Early, but not because of the program: an earlier fault is still recorded.
     Early,
 }
 
-/// How values get to the disk.
+/// When values are written to disk.
 #[allow(clippy::large_enum_variant, reason = "a run has one; paths are larger on Windows")]
 #[derive(Debug)]
 enum Saving {
-    /// When the run says so, and it waits.
+    /// When the run requests it; the run waits.
     Now(Keeper<Disk>),
-    /// After every change, from a thread of its own.
+    /// After every change, in a separate thread.
     Always(Writer),
     Ended,
 }
@@ -71,15 +71,15 @@ enum Saving {
 /// What a file held in addition to the values.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Loaded {
-    /// Where the clock continues, by which retained timers measure.
+    /// The time from which the clock continues; retained timers use it.
     pub clock: Time,
     /// For each variable of the file that the program no longer retains, and for a damaged half of the file.
     pub notes: Vec<String>,
 }
 
 impl Retention {
-    /// Reads the file into the state. A file that does not exist changes nothing: it is a first start. Its
-    /// bytes are anybody's, also with a right checksum: they become values of the variables' types.
+    /// Reads the file into the state. A file that does not exist changes nothing: this is a first start. Its
+    /// bytes are not trusted, even with a correct checksum: they become valid values of the variables' types.
     pub fn load(map: &Map, path: &Path, machine: &mut dyn Machine) -> Result<(Self, Loaded), Error> {
         let retained = Retained::of(map);
         let layout = retained.layout();

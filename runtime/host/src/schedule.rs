@@ -3,12 +3,12 @@
 use crate::map::Map;
 use staunch_runtime::Time;
 
-/// Time between scans where neither the command nor the source says one.
+/// Time between scans if neither the command nor the source sets it.
 pub const DEFAULT_CYCLE: Time = 10_000_000;
 
 #[derive(Clone, Debug)]
 pub(crate) struct Schedule {
-    /// In the order in which programs run that are due together.
+    /// In the order in which programs that are due at the same time run.
     tasks: Vec<Task>,
     /// Scans fall on multiples of it.
     tick: Option<Time>,
@@ -108,7 +108,7 @@ impl Schedule {
         Some(Turn { program, due, missed: u64::try_from(steps - 1).unwrap_or(0), next })
     }
 
-    /// The programs, in the order in which they run that are due together.
+    /// The programs, in the order in which they run if they are due at the same time.
     pub fn programs(&self) -> impl Iterator<Item = Due> {
         self.tasks.iter().map(|it| it.program)
     }

@@ -1,4 +1,4 @@
-//! Ends a run in real time when the user or the system asks for it: after its scan, or in the midst of a
+//! Ends a run in real time when the user or the system requests it: after its scan, or in the middle of a
 //! scan that takes too long.
 
 use std::sync::atomic::{AtomicBool, Ordering};

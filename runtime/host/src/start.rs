@@ -1,5 +1,5 @@
-//! The state of a program after an event: the initial values, and the values that the event keeps. Which
-//! variables those are is in the map; the compiler decides it.
+//! The state of a program after an event: the initial values, and the values that the event keeps. The map lists
+//! these variables; the compiler decides which they are.
 
 use crate::Machine;
 use crate::map::{Map, Structure, Type, Variable};
@@ -13,14 +13,14 @@ pub enum Event {
     Restart,
     /// IDLE -> RUN, STOP -> RUN.
     Run,
-    /// A reset that leaves what is retained: a warm one.
+    /// A warm reset, which keeps retained variables.
     Reset,
 }
 
 impl Event {
     pub const ALL: [Self; 3] = [Self::Restart, Self::Run, Self::Reset];
 
-    /// As a stimulus names it.
+    /// Its name in a stimulus.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Restart => "restart",

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Stimulus {
     path: PathBuf,
-    /// No row writes more.
+    /// The maximum number of values in a row.
     pub columns: usize,
     pub rows: Vec<Row>,
 }
@@ -130,7 +130,7 @@ impl Stimulus {
             return Err(parser.error(
                 1,
                 1,
-                "it is empty: the first line names `scan` or `time`, and variables".to_owned(),
+                "it is empty: expected a header that names `scan` or `time`, and variables".to_owned(),
             ));
         };
         parser.header(header)?;
@@ -178,9 +178,9 @@ struct Parser<'a> {
     map: &'a Map,
     running: &'a [usize],
     columns: Vec<Column>,
-    /// There is neither a scan nor a time: the rows are scans 1, 2, 3.
+    /// There is neither a column `scan` nor `time`: the rows are scans 1, 2, 3.
     is_numbered: bool,
-    /// It is a trace: its inputs are given again.
+    /// It is a trace: its inputs are replayed.
     is_trace: bool,
     /// Reals are written `3,5`.
     decimal_comma: bool,
@@ -345,7 +345,7 @@ mod tests {
         assert_eq!(third.writes, up(0));
     }
 
-    /// Values that a program computes are not given to it; a text may have become empty.
+    /// Values that a program computes are not written to it; a string may have become empty.
     #[test]
     fn a_trace_gives_its_inputs() {
         let stimulus = read("scan,time_ms,up,c.CV,name\n1,0,TRUE,5,a\n2,10.25,FALSE,6,\n").unwrap();
@@ -393,7 +393,7 @@ mod tests {
     #[test]
     fn mistakes_name_their_place() {
         for (text, expected) in [
-            ("", "in.csv:1:1: it is empty: the first line names `scan` or `time`, and variables"),
+            ("", "in.csv:1:1: it is empty: expected a header that names `scan` or `time`, and variables"),
             ("up\n1\n", "in.csv:1:1: the first column must be `scan` or `time`, not `up`"),
             ("scan,Upp\n", "in.csv:1:6: there is no variable `Upp`; did you mean `up`?"),
             ("scan,up,UP\n", "in.csv:1:9: `UP` already has a column"),

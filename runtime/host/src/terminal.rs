@@ -2,10 +2,10 @@
 
 /// Characters in a line without a terminal, or with one that does not give its width.
 const DEFAULT: usize = 100;
-/// Less has no room for a table.
+/// A table does not fit fewer.
 const LEAST: usize = 40;
 
-/// Characters in a line of standard output: what `COLUMNS` or the terminal says.
+/// Characters in a line of standard output, from `COLUMNS` or the terminal.
 pub(crate) fn width() -> usize {
     let said = std::env::var("COLUMNS").ok().and_then(|it| it.trim().parse().ok());
     said.or_else(of_terminal).unwrap_or(DEFAULT).max(LEAST)

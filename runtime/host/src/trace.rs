@@ -1,4 +1,4 @@
-//! Where the values of a run go: a row a scan.
+//! The output of a run's values: one row per scan.
 
 mod axis;
 mod diagram;
@@ -37,7 +37,7 @@ pub(crate) struct Subject<'a> {
     pub columns: Vec<Column>,
     /// The columns of numbers that a picture shows in one lane.
     pub overlays: Vec<Vec<usize>>,
-    /// Names the run to people.
+    /// The title of the run.
     pub title: String,
     /// Time between scans.
     pub cycle: Time,

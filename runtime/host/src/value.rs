@@ -1,4 +1,4 @@
-//! How values read: the cells of a trace.
+//! Values as text, for the cells of a trace.
 
 use crate::map::{Map, Type};
 use crate::path::{path_at, resolve, view_at};

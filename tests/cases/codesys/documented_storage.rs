@@ -33,11 +33,11 @@ use staunch_runtime::{Context, Fault};
 
 use staunch_runtime::{firmware, iec, ops};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["documented_storage.st"];
 const DOCUMENTED_STORAGE_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",
@@ -74,7 +74,7 @@ pub const IO: &[firmware::Io] = &[
 #[repr(C, align(2))]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Both {
-    /// The bytes that `word`, `bytes` share.
+    /// The bytes that `word` and `bytes` share.
     pub bytes: [u8; 2],
 }
 
@@ -243,7 +243,7 @@ impl Main {
 
     /// METHOD start (documented_storage.st:18)
     ///
-    /// Before the first scan: starts the global instances and those inside, if that has not been done.
+    /// Before the first scan: starts the global instances, and the instances in them, unless that has been done.
     /// Each scan begins with it; if several PROGRAMs run, call it for all of them before the first scan of any.
     pub fn start(&mut self, globals: &mut Globals) {
         if !self.started {
@@ -297,7 +297,7 @@ impl Globals {
         }
     }
 
-    /// Sets each input to the bits that `read` gives for it: before a scan.
+    /// Sets each input to the bits that `read` returns for it: call it before a scan.
     pub fn read_inputs(&mut self, mut read: impl FnMut(&firmware::Io) -> u64) {
         for (number, io) in IO.iter().enumerate() {
             if io.area == firmware::Area::Input {
@@ -306,7 +306,7 @@ impl Globals {
         }
     }
 
-    /// Hands the bits of each output to `write`: after a scan.
+    /// Passes the bits of each output to `write`: call it after a scan.
     pub fn write_outputs(&self, mut write: impl FnMut(&firmware::Io, u64)) {
         for (number, io) in IO.iter().enumerate() {
             if io.area == firmware::Area::Output {
@@ -315,7 +315,7 @@ impl Globals {
         }
     }
 
-    /// The bits of the variable with this number in `IO`, the lowest first; 0 where there is none.
+    /// The bits of the variable with this number in `IO`, lowest bit first; 0 if the number is out of range.
     pub fn io(&self, number: usize) -> u64 {
         match number {
             0 => u64::from(self.w),
@@ -324,7 +324,7 @@ impl Globals {
         }
     }
 
-    /// Sets the variable with this number in `IO` from its bits; those above its width are left out.
+    /// Sets the bits of the variable with this number in `IO`; bits above its width are ignored.
     pub fn set_io(&mut self, number: usize, bits: u64) {
         match number {
             0 => self.w = bits as u16,
@@ -336,7 +336,7 @@ impl Globals {
         }
     }
 
-    /// Sets inputs and memory to what a process image has: before a scan.
+    /// Copies inputs and memory from a process image: call it before a scan.
     #[rustfmt::skip]
     pub fn read_image(&mut self, image: &impl firmware::ProcessImage) {
         use firmware::{Area, Place, Width};
@@ -352,7 +352,7 @@ impl Globals {
         }
     }
 
-    /// Writes outputs and memory to a process image: after a scan, and once before the first one.
+    /// Copies outputs and memory to a process image: call it after a scan, and once before the first one.
     #[rustfmt::skip]
     pub fn write_image(&self, image: &mut impl firmware::ProcessImage) {
         use firmware::{Area, Place, Width};

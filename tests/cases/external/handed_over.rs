@@ -34,7 +34,7 @@ use staunch_runtime::{Context, Fault, Text};
 
 use staunch_runtime::firmware;
 
-/// What the program calls and does not say: the module around this one implements it for its `Externals`.
+/// The routines that the program calls but does not contain: the module that includes this one implements them for its type `Externals`.
 pub trait External {
     /// FUNCTION Next (handed_over.st:6)
     fn next(channel: i16, count: &mut i32) -> bool;
@@ -50,11 +50,11 @@ pub trait External {
     fn drives_axis(block: &mut DrivesAxis, cx: &Context, log: &mut Sample);
 }
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["handed_over.st"];
 const HANDED_OVER_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",

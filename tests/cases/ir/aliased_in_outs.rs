@@ -33,11 +33,11 @@ use staunch_runtime::{Context, Fault, FaultKind, OrFault};
 
 use staunch_runtime::{firmware, ops};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["aliased_in_outs.st"];
 const ALIASED_IN_OUTS_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",

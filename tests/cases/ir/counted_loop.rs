@@ -33,11 +33,11 @@ use staunch_runtime::{Context, Fault, OrFault};
 
 use staunch_runtime::{firmware, iec, ops};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["counted_loop.st"];
 const COUNTED_LOOP_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",

@@ -34,11 +34,11 @@ use staunch_runtime::{Context, Fault, OrFault};
 
 use staunch_runtime::{firmware, ops, reference};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["just_pointed_to.st"];
 const JUST_POINTED_TO_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",
@@ -152,7 +152,7 @@ impl Default for Globals {
     }
 }
 
-/// The objects that references may name, and the types in them.
+/// The objects that references can refer to, and their types.
 #[rustfmt::skip]
 const REFERENCES: reference::Table<'static> = reference::Table::new(
     &[
@@ -162,7 +162,7 @@ const REFERENCES: reference::Table<'static> = reference::Table::new(
     ],
 );
 
-/// The program's whole state: what references may lead to.
+/// The program's whole state, into which references can point.
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {

@@ -34,11 +34,11 @@ use staunch_runtime::{Context, Fault, OrFault};
 
 use staunch_runtime::{exception, firmware, ops, reference};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["looked_up.st"];
 const LOOKED_UP_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",
@@ -193,7 +193,7 @@ impl Default for Globals {
     }
 }
 
-/// The objects that references may name, and the types in them.
+/// The objects that references can refer to, and their types.
 #[rustfmt::skip]
 const REFERENCES: reference::Table<'static> = reference::Table::new(
     &[
@@ -203,7 +203,7 @@ const REFERENCES: reference::Table<'static> = reference::Table::new(
     ],
 );
 
-/// The program's whole state: what references may lead to.
+/// The program's whole state, into which references can point.
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {
@@ -224,7 +224,7 @@ impl Machine {
         }
     }
 
-    /// The Motor that a reference leads to, if it is where one is expected.
+    /// The Motor that a reference refers to, if it is in one of the expected places.
     #[inline]
     #[rustfmt::skip]
     fn motor_at(&self, reference: u64, distance: u64) -> reference::Found<'_, Motor, Self> {

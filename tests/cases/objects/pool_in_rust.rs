@@ -34,11 +34,11 @@ use staunch_runtime::{Context, Fault, FaultKind, OrFault};
 
 use staunch_runtime::{firmware, ops, reference};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["pool_in_rust.st"];
 const POOL_IN_RUST_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",
@@ -201,13 +201,13 @@ impl Default for Main {
 
 /// TYPE PlaceOfPart (pool_in_rust.st:4)
 ///
-/// A place for a `Part`.
+/// A place for one `Part`.
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlaceOfPart {
-    /// Whether it is one.
+    /// Whether the place holds an object.
     pub used: Cell<bool>,
-    /// What `__NEW` has made.
+    /// The object that `__NEW` has created.
     pub object: Part,
 }
 #[rustfmt::skip]
@@ -233,7 +233,7 @@ impl Default for PlaceOfPart {
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Globals {
-    /// The objects of `Part` that `__NEW` makes.
+    /// The pool of `Part`: the objects that `__NEW` creates.
     pub pool_of_part: [PlaceOfPart; 2],
 }
 #[rustfmt::skip]
@@ -254,7 +254,7 @@ impl Default for Globals {
     }
 }
 
-/// The objects that references may name, and the types in them.
+/// The objects that references can refer to, and their types.
 #[rustfmt::skip]
 const REFERENCES: reference::Table<'static> = reference::Table::new(
     &[
@@ -264,7 +264,7 @@ const REFERENCES: reference::Table<'static> = reference::Table::new(
     ],
 );
 
-/// The program's whole state: what references may lead to.
+/// The program's whole state, into which references can point.
 #[repr(C)]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Machine {

@@ -33,11 +33,11 @@ use staunch_runtime::{Context, Fault, OrFault};
 
 use staunch_runtime::{firmware, ops, strips};
 
-/// The sources, as the `file` of a fault's location counts them.
+/// The source files: the `file` of a fault's location is an index into them.
 pub const FILES: &[&str] = &["short_circuits_in_conditions.st"];
 const SHORT_CIRCUITS_IN_CONDITIONS_ST: u16 = 0;
 
-/// The programs that run.
+/// The program instances that run.
 pub const TASKS: &[firmware::Task] = &[firmware::Task {
     instance: "Main",
     program: "Main",

@@ -3,7 +3,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// What the editors call their project, and the file by which they know its folder.
+/// The name of the editors' project file, and the file by which they recognise its folder.
 const NAMES: [&str; 2] = ["plc.xml", "beremiz.xml"];
 
 pub fn is_project(path: &Path) -> bool {

@@ -1,18 +1,18 @@
-//! The files of a project of OpenPLC Editor: its folder says which they are, and not its `project.json`.
+//! The files of an OpenPLC Editor project: its folder determines which they are, not its `project.json`.
 
 use staunch_frontend::Source;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// What the editor calls its project.
+/// The name of the editor's project file.
 const NAME: &str = "project.json";
 /// Folders of POUs, each with a file for each POU.
 const POUS: [&str; 3] = ["pous/functions", "pous/function-blocks", "pous/programs"];
-/// The endings of these files; `.json` is that of the editors before v4.1.
+/// The extensions of these files; editors before v4.1 write `.json`.
 const LANGUAGES: [&str; 8] = ["st", "il", "ld", "fbd", "sfc", "py", "cpp", "json"];
 
-/// Whether a file is such a project: it has its name, and says so, or has POUs in its folder. Other tools have JSON of
-/// that name.
+/// Whether a file is such a project: it has the project's name, and either its contents show it or its folder has POUs. Other
+/// tools have JSON files with this name.
 pub fn is_project(path: &Path) -> bool {
     path.file_name().is_some_and(|it| it == NAME)
         && path.is_file()
@@ -24,7 +24,7 @@ pub fn project_in(folder: &Path) -> Option<PathBuf> {
     Some(folder.join(NAME)).filter(|it| is_project(it))
 }
 
-/// The project, its types, its POUs and what it says of its device, as far as they exist.
+/// The files of the project, its types, its POUs and its device, as far as they exist.
 pub fn files(project: &Path) -> Result<Vec<PathBuf>, String> {
     let folder = project.parent().unwrap_or(Path::new(""));
     let mut files = vec![project.to_owned()];
@@ -40,7 +40,7 @@ pub fn files(project: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// A POU in JSON gives way to one of the same name in a file of its language, as in the editor.
+/// A POU in a file of its language replaces one with the same name in JSON, as in the editor.
 fn is_replaced(path: &Path, all: &[PathBuf]) -> bool {
     let is_json = |it: &Path| it.extension().is_some_and(|it| it == "json");
     is_json(path) && all.iter().any(|it| !is_json(it) && it.file_stem() == path.file_stem())

@@ -2,7 +2,7 @@
 
 use super::{choice, flag, nearest, number, text};
 
-/// One line, as it is written.
+/// One line, as written in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Gpio {
     /// A variable or an address.
@@ -36,7 +36,7 @@ fn one(table: &toml::Table) -> Result<Gpio, String> {
     if let Some(key) = table.keys().find(|it| !KEYS.contains(&it.as_str())) {
         return Err(match nearest(key, KEYS.into_iter()) {
             Some(near) => format!("`[[gpio]]` has no setting `{key}`; did you mean `{near}`?"),
-            None => format!("`[[gpio]]` has no setting `{key}`; there are {}", KEYS.join(", ")),
+            None => format!("`[[gpio]]` has no setting `{key}`; its settings are {}", KEYS.join(", ")),
         });
     }
     let needed = |key: &str, example: &str| {

@@ -5,7 +5,7 @@ use staunch_frontend::format::{Indent, Letters, Style};
 
 const KEYS: [&str; 4] = ["indent", "width", "keywords", "indent-pous"];
 
-/// The widths that lines can have.
+/// The allowed line widths.
 const WIDTHS: core::ops::RangeInclusive<u64> = 40..=400;
 
 pub fn read(value: &toml::Value) -> Result<Style, String> {
@@ -32,7 +32,7 @@ pub fn read(value: &toml::Value) -> Result<Style, String> {
             _ => {
                 return Err(match nearest(key, KEYS.into_iter()) {
                     Some(near) => format!("`[fmt]` has no setting `{key}`; did you mean `{near}`?"),
-                    None => format!("`[fmt]` has no setting `{key}`; there are {}", KEYS.join(", ")),
+                    None => format!("`[fmt]` has no setting `{key}`; its settings are {}", KEYS.join(", ")),
                 });
             }
         }

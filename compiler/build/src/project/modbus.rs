@@ -2,7 +2,7 @@
 
 use super::{choice, nearest, number, text};
 
-/// One server, as it is written.
+/// One server, as written in the file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Modbus {
     pub name: Option<String>,
@@ -22,9 +22,9 @@ pub struct Modbus {
     pub on_loss: Option<String>,
     /// high-first or low-first.
     pub word_order: Option<String>,
-    /// openplc: each input and output has the place that its address has there.
+    /// openplc: each input and output has the place that OpenPLC gives its address.
     pub layout: Option<String>,
-    /// Variables or addresses, and what they are at the server.
+    /// Variables or addresses, and their places at the server.
     pub map: Vec<(String, String)>,
 }
 
@@ -72,7 +72,7 @@ fn one(table: &toml::Table) -> Result<Modbus, String> {
             _ => {
                 return Err(match nearest(key, KEYS.into_iter()) {
                     Some(near) => format!("`[[modbus]]` has no setting `{key}`; did you mean `{near}`?"),
-                    None => format!("`[[modbus]]` has no setting `{key}`; there are {}", KEYS.join(", ")),
+                    None => format!("`[[modbus]]` has no setting `{key}`; its settings are {}", KEYS.join(", ")),
                 });
             }
         }

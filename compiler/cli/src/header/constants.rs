@@ -24,7 +24,7 @@ pub fn constants(program: &Program, names: &mut Names) -> String {
     }
     match text.is_empty() {
         true => text,
-        false => format!("\n/* Constants: the program has their values, whatever the state says. */\n{text}"),
+        false => format!("\n/* Constants: the program uses these values, whatever the state contains. */\n{text}"),
     }
 }
 

@@ -17,9 +17,9 @@ pub fn prototypes(types: &mut Types<'_>) -> String {
     };
     externals.iter().flat_map(|it| all(it)).for_each(|it| types.define(it));
     let mut text = "
-/* What the program calls: implement it, and link it with the program. A FUNCTION_BLOCK gets its instance and
-   the context of the scan; what is no number is passed by a pointer, which is to no other parameter. Write values
-   of the variables' types. */
+/* The POUs that the program calls but does not implement: define these functions, and link them with the program. A
+   FUNCTION_BLOCK gets its instance and the context of the scan. Parameters that are not numbers are passed by pointers,
+   which never overlap. Write only valid values of the variables' types. */
 "
     .to_owned();
     for it in &externals {

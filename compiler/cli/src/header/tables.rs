@@ -9,8 +9,8 @@ use std::fmt::Write;
 /// Each is a macro with the rows of an array, and one with their number, so that nothing is in the program that is not used.
 pub fn tables(program: &Program, layout: &Layout, names: &mut Names) -> String {
     let mut text = String::from(
-        "\n/* Tables, for `static const staunch_task tasks[] = STAUNCH_TASKS;` and so on: what runs, what is at an address, and what a\n   \
-         power cycle keeps. A table without rows is not there. */\n",
+        "\n/* Tables, for `static const staunch_task tasks[] = STAUNCH_TASKS;` and so on: the instances that run, the variables at\n   \
+         addresses, and the bytes that are kept over a power cycle. A table without rows is left out. */\n",
     );
     let tasks = program.instances.iter().enumerate().map(|(number, it)| {
         format!("{{{}, {number}u, INT64_C({}), {}u}}", quoted(&it.name), it.interval.unwrap_or(0), it.priority)

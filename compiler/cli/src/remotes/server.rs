@@ -52,20 +52,17 @@ fn line(modbus: &Modbus, port: &str) -> Result<Line, (String, String)> {
         let (least, most) = (Line::BAUD_RATES.start(), Line::BAUD_RATES.end());
         fail(
             "baud-rate",
-            format!("`baud-rate` is a number from {least} to {most}, as 9600 or 19200, and not {baud_rate}"),
+            format!("`baud-rate` must be a number from {least} to {most}, such as 9600 or 19200, not {baud_rate}"),
         )
     })?;
     if let Some(bits) = modbus.data_bits.filter(|it| *it != 8) {
-        return Err(fail(
-            "data-bits",
-            format!("Modbus RTU has 8 data bits, and not {bits}: `data-bits` may be left out"),
-        ));
+        return Err(fail("data-bits", format!("Modbus RTU has 8 data bits, not {bits}: `data-bits` can be left out")));
     }
     let stop_bits = match modbus.stop_bits {
         None => usual.stop_bits,
         Some(1) => 1,
         Some(2) => 2,
-        Some(other) => return Err(fail("stop-bits", format!("`stop-bits` is 1 or 2, and not {other}"))),
+        Some(other) => return Err(fail("stop-bits", format!("`stop-bits` must be 1 or 2, not {other}"))),
     };
     let parity = named(&Parity::ALL, modbus.parity.as_deref()).unwrap_or(usual.parity);
     Ok(Line { baud_rate, parity, stop_bits, ..usual })

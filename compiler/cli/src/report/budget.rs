@@ -22,7 +22,9 @@ pub fn exceeded(figures: &Figures, project: &Project) -> Vec<String> {
 fn over_stack(need: &Need, most: u64) -> Option<String> {
     if !need.unknown.is_empty() {
         let unknown = need.unknown_names();
-        return Some(format!("takes a stack that is not known: it calls {unknown}, implemented outside"));
+        return Some(format!(
+            "needs an unknown amount of stack: it calls {unknown}, which is implemented outside Structured Text"
+        ));
     }
     (need.bytes > most)
         .then(|| format!("takes {} bytes of the stack, more than {most}: {}", need.bytes, path(&need.path)))

@@ -53,7 +53,7 @@ fn details(it: &OfTask) -> String {
     let name = &it.task.name;
     let mut text = format!("Stack of {name}: {}\n", path(&it.stack.path));
     if !it.stack.unknown.is_empty() {
-        text += &format!("  What is implemented outside may take any stack: {}\n", it.stack.unknown_names());
+        text += &format!("  External code may need any amount of stack: {}\n", it.stack.unknown_names());
     }
     if it.time.instructions.is_some() {
         text += &format!("Instructions of {name}: {}\n", path(&it.time.path));

@@ -48,7 +48,7 @@ fn unbounded(program: &Program, it: &Unknown) -> Unbounded {
             Unbounded { place: Some((file, *at)), text: reason(*why).to_owned() }
         }
         Unknown::Call(symbol) => {
-            Unbounded { place: None, text: format!("how long a call of {symbol} takes is not known") }
+            Unbounded { place: None, text: format!("it is not known how long a call of {symbol} takes") }
         }
         Unknown::Code(function, gap) => {
             Unbounded { place: None, text: format!("the code of {function}: {}", part(*gap)) }
@@ -59,9 +59,9 @@ fn unbounded(program: &Program, it: &Unknown) -> Unbounded {
 fn part(gap: Gap) -> &'static str {
     match gap {
         Gap::All => "it was not counted",
-        Gap::Instruction => "it has an instruction that is not known",
-        Gap::Call => "it has a call of which it is not known what it calls",
-        Gap::Loop => "it has a loop that is none of the source's",
+        Gap::Instruction => "it has an unknown instruction",
+        Gap::Call => "it has a call whose target is not known",
+        Gap::Loop => "it has a loop that does not come from the source",
     }
 }
 
@@ -69,7 +69,7 @@ fn reason(why: Why) -> &'static str {
     match why {
         Why::Limits => "the limits of this FOR are not constant",
         Why::Written => "something else may write the counter of this FOR",
-        Why::Condition => "nothing is known of how often the condition of this loop holds",
+        Why::Condition => "it is not known how many times this loop runs",
         Why::Constant => "this loop has no limit",
     }
 }

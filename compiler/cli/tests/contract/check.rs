@@ -234,12 +234,18 @@ fn codes_are_explained() {
     folder.staunch("explain Z9").err(2);
     let list = folder.staunch("explain").out(0);
     has(&list, &["\nNames\n", "\n  E0101  ", "\n  W0501  "]);
-    // The page is this list; write it anew when it differs.
+    // The page is this list, with a heading for each section; write it again when it differs.
     let page = include_str!("../../../../docs/diagnostics.md");
-    assert!(
-        page.contains(&format!("```text\n{list}```\n")),
-        "docs/diagnostics.md is not what `staunch explain` prints"
-    );
+    let (about, sections) = list.trim_end().split_once("\n\n").expect("sections follow the first lines");
+    let mut shown = format!("```text\n{about}\n```\n");
+    let listed: Vec<_> = page.split_once("\n## ").map(|it| it.1.split("\n## ").collect()).unwrap_or_default();
+    assert!(page.contains(&shown), "docs/diagnostics.md does not begin as `staunch explain` does");
+    for (section, on_page) in sections.split("\n\n").zip(&listed) {
+        let (title, codes) = section.split_once('\n').expect("a section has codes");
+        shown = format!("{title}\n\n```text\n{codes}\n```\n");
+        assert_eq!(shown.trim_end(), on_page.trim_end(), "docs/diagnostics.md is not what `staunch explain` prints");
+    }
+    assert_eq!(sections.split("\n\n").count(), listed.len());
     let codes = list.lines().filter(|it| it.starts_with("  E") || it.starts_with("  W")).count();
     assert_eq!(codes, staunch_frontend::Code::ALL.len());
 }

@@ -136,7 +136,7 @@ fn what_cannot_be_connected_is_refused() {
         has(&answer("--io opcua:x"), &["`opcua:x`", "write shm:NAME, modbus:ADDRESS:PORT or modbus-rtu:PORT"]);
         has(&answer("--io shm:a/b"), &["`a/b` is not a name in /dev/shm"]);
         has(&answer("--io modbus:502"), &["modbus:127.0.0.1:502"]);
-        has(&answer("--io shm:x --io-stop keep"), &["there are zero and hold"]);
+        has(&answer("--io shm:x --io-stop keep"), &["write zero or hold"]);
         has(&answer("--io-stop hold"), &["--io"]);
         let text = answer(&format!("--io modbus:{address}"));
         has(&text, &["cannot listen on 127.0.0.1:", "another program listens there"]);

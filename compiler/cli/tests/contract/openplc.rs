@@ -155,7 +155,7 @@ fn pins_that_contradict_each_other_are_reported() {
         "devices/pin-mapping.json:4:74: error[E0033]: `FloatSwitch` is the alias of two pins, `2` and `4`",
         "devices/pin-mapping.json:5:56: error[E0033]: `%IX0.5` is not an address of this kind of pin, `%QX…`",
         "devices/pin-mapping.json:6:54: error[E0033]: `seven` is not an address",
-        "devices/pin-mapping.json:7:3: error[E0033]: a text is not a pin of OpenPLC Editor, which is an object",
+        "devices/pin-mapping.json:7:3: error[E0033]: a pin of OpenPLC Editor must be an object, not a string",
     ];
     has(&found, &expected);
 }
@@ -272,7 +272,7 @@ fn damaged_files_are_reported_where_they_are_damaged() {
     folder.write("project.json", "");
     check(&folder, &["project.json:1:1: error[E0033]", "the file ends where a value is expected"]);
     folder.write("project.json", "[]");
-    check(&folder, &["project.json:1:1: error[E0033]: a list is not a project of OpenPLC Editor"]);
+    check(&folder, &["project.json:1:1: error[E0033]: a project of OpenPLC Editor must be an object, not a list"]);
     folder.write("project.json", format!("{}{}", "[".repeat(5000), "]".repeat(5000)));
     check(&folder, &["project.json:1:129: error[E0033]", "values are nested too deeply"]);
     folder.write("project.json", PROJECT.replace("\"main\"", "\"../main\""));
@@ -281,12 +281,12 @@ fn damaged_files_are_reported_where_they_are_damaged() {
     check(&folder, &["project.json:9:", "`absent`"]);
     folder.write("project.json", PROJECT);
     folder.write("devices/pin-mapping.json", "{ \"Uno\": 5 }");
-    check(&folder, &["devices/pin-mapping.json:1:3: error[E0033]: the pins of `Uno` are a number, and not a list"]);
+    check(&folder, &["devices/pin-mapping.json:1:3: error[E0033]: the pins of `Uno` are a number, not a list"]);
     folder.write("devices/pin-mapping.json", "{");
     check(&folder, &["devices/pin-mapping.json:1:1: error[E0033]", "this is not closed"]);
     folder.write("devices/pin-mapping.json", PINS);
     folder.write("pous/programs/more.json", "{ \"body\": 5, \"language\": 6, \"data\": 7 }");
-    check(&folder, &["pous/programs/more.json:1:37: error[E0033]: `data` is a number here, and an object"]);
+    check(&folder, &["pous/programs/more.json:1:37: error[E0033]: `data` is a number here, but must be an object"]);
     // It is a project even without these.
     std::fs::remove_dir_all(folder.0.join("devices")).unwrap();
     std::fs::remove_file(folder.0.join("pous/programs/more.json")).unwrap();

@@ -91,7 +91,10 @@ PROGRAM Main VAR_OUTPUT n : INT; END_VAR n := Read_Sensor(); END_PROGRAM";
     let found = object(&folder.staunch("report main.st --message-format json").out(0));
     assert_eq!(found["tasks"][0]["stack_bytes"], Value::Null);
     assert_eq!(found["tasks"][0]["stack_unknown"].as_array().unwrap().len(), 1);
-    has(&folder.staunch("report main.st").out(0), &["unknown", "implemented outside may take any stack: Read_Sensor"]);
+    has(
+        &folder.staunch("report main.st").out(0),
+        &["unknown", "External code may need any amount of stack: Read_Sensor"],
+    );
 }
 
 #[test]

@@ -319,7 +319,7 @@ PROGRAM B VAR y : INT; END_VAR y := y + 2; END_PROGRAM
     let expected = "scan,time_ms,A.x,B.y\n1,0,1,2\n2,10,2,4\n";
     assert_eq!(folder.staunch("run configured.st --scans 2 --trace -").out(0), expected);
     has(&folder.staunch("compare configured.st --from iec --to siemens").out(0), &["are equal"]);
-    let which = "the sources have several programs; choose one with --program: there are A, B";
+    let which = "the sources have several programs; choose one with --program: A, B";
     has(&folder.staunch("run plain.st --scans 2").err(2), &[which]);
 }
 

@@ -1,6 +1,6 @@
-//! Names that differ only in capitals and small letters, which Automation Studio tells apart. B&R's libraries have such members, for what is
-//! internal to them, and types that are called as function blocks. A member that no code names, and a type, is called otherwise here;
-//! others stay, and are refused.
+//! Names that differ only in case, which Automation Studio distinguishes. B&R's libraries have such members, for internal use, and
+//! types with the names of function blocks. A member that no code names, and a type, is renamed here;
+//! other such names stay, and are refused.
 
 use crate::Sources;
 use crate::ast::{File, Item, Name, TypeKind, TypeSpec, VarDecl};

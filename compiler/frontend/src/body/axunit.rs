@@ -160,7 +160,7 @@ impl<'s> Checker<'_, 's> {
             self.report(
                 Diagnostic::new(Code::E0316, mock.span, format!("`{b}` cannot run in place of `{a}`"))
                     .label("expected a FUNCTION for a FUNCTION, or a FUNCTION_BLOCK for one, with the same parameters")
-                    .help("METHODs, and FUNCTION_BLOCKs that EXTEND others or are extended, cannot be exchanged yet"),
+                    .help("METHODs, and FUNCTION_BLOCKs that EXTEND others or are extended, cannot be replaced yet"),
             );
             return None;
         };

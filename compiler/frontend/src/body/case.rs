@@ -135,7 +135,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(first) = seen.labels.insert(range, span) {
             self.report(
                 Diagnostic::new(Code::E0506, span, "this CASE label is written twice")
-                    .label("never chosen: the first one is")
+                    .label("never chosen: the first label has precedence")
                     .other(first, "first here"),
             );
             return Vec::new();
@@ -151,10 +151,10 @@ impl<'s> Checker<'_, 's> {
     fn report_overlap(&mut self, never: bool, first: Span, span: Span) {
         let lint = if never {
             Diagnostic::new(Code::W0512, span, "this CASE label is never chosen")
-                .label("labels before it hold all of its values")
+                .label("earlier labels cover all of its values")
         } else {
             Diagnostic::new(Code::W0512, span, "this CASE label overlaps another")
-                .label("where both hold the value, the first one is chosen")
+                .label("if both include the value, the first label is chosen")
         };
         self.report(lint.other(first, "first here"));
     }

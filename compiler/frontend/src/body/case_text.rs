@@ -67,7 +67,7 @@ impl<'s> Checker<'_, 's> {
         if let Some(first) = labels.iter().find(|it| text_of(it) == Some(chars)) {
             self.report(
                 Diagnostic::new(Code::E0506, span, "this CASE label is written twice")
-                    .label("never chosen: the first one is")
+                    .label("never chosen: the first label has precedence")
                     .other(first.span, "first here"),
             );
             return None;

@@ -123,7 +123,7 @@ impl<'s> Declarations<'s> {
             return self.refuse_external(
                 pou.name.span,
                 message,
-                "declared so",
+                "declared as external here",
                 "call a FUNCTION or FUNCTION_BLOCK that is",
             );
         }
@@ -180,7 +180,7 @@ impl<'s> Declarations<'s> {
         match ty {
             Type::Elementary(_) | Type::String(_) | Type::Enum(_) => None,
             Type::Subrange(..) => {
-                is_written.then_some("the implementation is not held to the limits: declare the type without them")
+                is_written.then_some("the implementation might ignore the limits: declare the type without them")
             }
             Type::Reference(_) => Some("references are checked only in Structured Text: pass the variable itself"),
             Type::Block(_) => Some("blocks are called only in Structured Text: pass its outputs"),

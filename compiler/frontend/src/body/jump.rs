@@ -68,7 +68,7 @@ impl<'s> Checker<'_, 's> {
         for (at, name) in labels.iter().enumerate() {
             if !self.decl.dialect(name.span).has_jumps() {
                 self.report(
-                    Diagnostic::new(Code::E0514, name.span, "a label, to which only CODESYS and SCL jump")
+                    Diagnostic::new(Code::E0514, name.span, "this is a label, but only CODESYS and SCL have jumps")
                         .label("Structured Text has no jumps")
                         .help(WITHOUT),
                 );

@@ -1,7 +1,6 @@
 //! WHILE and REPEAT, which are one loop in the IR, and FOR.
 
 use super::each_turn::Calls;
-use crate::diagnostic::wording::article;
 use crate::dialect::rules::{Part, Use, is_followed};
 use crate::expr::checker::Checker;
 use crate::expr::operand::{Operand, stored};
@@ -257,8 +256,9 @@ impl<'s> Checker<'_, 's> {
         if is_certain && !is_followed(dialect, Part::LimitOfType) {
             let system = dialect.name().to_ascii_uppercase();
             let message =
-                format!("on {system} this loop does not end: {} has no value beyond its limit", article(ty.name()));
-            let lint = Diagnostic::new(Code::W0614, to.span, message).label("here the loop ends with this turn");
+                format!("on {system} this loop does not end: its counter cannot pass the limit of {}", ty.name());
+            let lint =
+                Diagnostic::new(Code::W0614, to.span, message).label("in Staunch, the loop ends after this value");
             self.report(lint.help("count in a wider type, or leave the loop with EXIT after its last turn"));
         }
     }

@@ -32,7 +32,7 @@ impl<'s> Checker<'_, 's> {
                     self.report(
                         Diagnostic::new(Code::W0502, statement.span, "this is never reached")
                             .label("no path leads here")
-                            .other(span, "the statement before leaves"),
+                            .other(span, "no statement after this one is executed"),
                     );
                 }
             }
@@ -281,7 +281,7 @@ impl<'s> Checker<'_, 's> {
     /// `a := b := c`: each target gets what the one to its right was given.
     fn assign_all(&mut self, targets: &[ast::Expr<'s>], value: &ast::Expr<'s>, span: Span) -> Option<()> {
         if !self.decl.dialect(span).assigns_in_a_row() {
-            let message = "an assignment has no value, and one variable on its left";
+            let message = "an assignment has no value, and only one variable on its left";
             self.report(
                 Diagnostic::new(Code::E0512, span, message)
                     .label("several assignments in a row are an extension of CODESYS and SIMATIC")
@@ -327,7 +327,7 @@ impl<'s> Checker<'_, 's> {
     fn set_reset_all(&mut self, targets: &[(ast::Expr<'s>, bool)], value: &ast::Expr<'s>, span: Span) -> Option<()> {
         if !self.decl.dialect(span).assigns_in_a_row() {
             self.report(
-                Diagnostic::new(Code::E0512, span, "`S=` and `R=` have no value, and one variable on their left")
+                Diagnostic::new(Code::E0512, span, "`S=` and `R=` have no value, and only one variable on their left")
                     .label("several in a row are an extension of CODESYS")
                     .help("write one statement for each variable"),
             );

@@ -68,7 +68,7 @@ impl<'s> Declarations<'s> {
     pub(super) fn check_one_name(&mut self, decl: &ast::VarDecl<'s>) {
         if let (Some(address), [_, second, ..]) = (decl.known_address(), decl.names.as_slice()) {
             self.report(
-                Diagnostic::new(Code::E0409, second.span, "one address has one variable")
+                Diagnostic::new(Code::E0409, second.span, "an address can have only one variable")
                     .label("a second name")
                     .other(address.span, "for this address")
                     .help("declare each name by itself: `a AT %IX0.0 : BOOL; b AT %IX0.1 : BOOL;`"),

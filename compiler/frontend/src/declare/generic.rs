@@ -111,7 +111,7 @@ impl<'s> Declarations<'s> {
             } else {
                 "write a FUNCTION with the same name for each type: a call uses the one that fits its arguments"
             };
-            return Some(error.label("here it is a part of one").help(help));
+            return Some(error.label("here it is only part of a type").help(help));
         }
         if let Some(VarKind::Stat | VarKind::External | VarKind::Global) = kind {
             let word = self.log.sources.text(block.map_or(name.span, |it| it.span));

@@ -179,7 +179,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 Diagnostic::new(Code::E0206, span, "there are more initial values than elements")
                     .label(format!("{} values for {total} elements", runs.len))
-                    .help(format!("take {} away, or declare a longer array", runs.len - total)),
+                    .help(format!("remove {}, or declare a longer array", runs.len - total)),
             );
             return None;
         }

@@ -123,7 +123,7 @@ impl Declarations<'_> {
                 Diagnostic::new(
                     Code::W0514,
                     span,
-                    format!("`{}` is not packed: it takes {is} bytes, and not {asked}", decl.name.text),
+                    format!("`{}` is not packed: it takes {is} bytes instead of {asked}", decl.name.text),
                 )
                 .label(why)
                 .other(decl.name.span, "declared here")

@@ -39,7 +39,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 Diagnostic::new(Code::E0413, pool, format!("`{}` is ABSTRACT: it has no objects", pou.name.text))
                     .label("declare the pool for a FUNCTION_BLOCK that extends it")
-                    .other(span, "declared so here"),
+                    .other(span, "declared as such here"),
             );
             return false;
         }
@@ -84,7 +84,7 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(
                     Code::E0413,
                     pool,
-                    format!("`{}` is another name of {ty}, which has a pool", name.text),
+                    format!("`{}` is another name for {ty}, which has a pool", name.text),
                 )
                 .label("a type has one pool")
                 .help("delete this pragma, and add the number of these objects there"),
@@ -114,7 +114,7 @@ impl<'s> Declarations<'s> {
         let Some(count) = pool.count.filter(|it| (1..=MOST).contains(it)) else {
             self.report(
                 Diagnostic::new(Code::E0413, pool.span, format!("a pool can have 1 to {MOST} objects"))
-                    .label("this is another number, or none")
+                    .label(format!("expected a whole number from 1 to {MOST}"))
                     .help("write the largest number of objects at a time: `{pool 16}`"),
             );
             return None;
@@ -134,14 +134,16 @@ impl<'s> Declarations<'s> {
             declared: None,
         };
         let title = title.replace('.', "_");
-        let fields =
-            vec![field("used", Type::BOOL, "Whether it is one."), field("object", object, "What `__NEW` has made.")];
-        let doc = format!("A place for a `{}`.", name.text);
+        let fields = vec![
+            field("used", Type::BOOL, "Whether the place holds an object."),
+            field("object", object, "The object that `__NEW` has created."),
+        ];
+        let doc = format!("A place for one `{}`.", name.text);
         let place = self.push_struct(Struct::new(format!("PlaceOf{title}"), Some(doc), location, fields));
         self.program.places.insert(place);
         let count = i64::from(count);
         let array = self.intern_array(1, count, Resolved { ty: Type::Struct(place), initial: Const::Zero });
-        let doc = format!("The objects of `{}` that `__NEW` makes.", name.text);
+        let doc = format!("The pool of `{}`: the objects that `__NEW` creates.", name.text);
         let objects = Field { section: Section::Global, ..field(&format!("pool_of_{title}"), array, &doc) };
         let at = self.add_synthetic(objects, None);
         let places = self.synthetic_place(at);

@@ -150,7 +150,7 @@ impl Log<'_> {
                 let near = nearest(name, names.iter().copied());
                 error = error.help(match near {
                     Some(near) => format!("did you mean `{{dialect '{near}'}}`?"),
-                    None => format!("the dialects are {}", crate::diagnostic::wording::list(&names)),
+                    None => format!("the dialects are {}", crate::diagnostic::wording::all_of(&names)),
                 });
                 self.report(error);
                 continue;
@@ -251,7 +251,7 @@ impl Log<'_> {
         };
         let message = format!("{what} in the pragma `{word}` is not supported yet");
         self.report(
-            Diagnostic::new(Code::E0902, pragma.span, message).label("whether it holds is not known here").help(help),
+            Diagnostic::new(Code::E0902, pragma.span, message).label("whether it is true is not known here").help(help),
         );
     }
 

@@ -2,7 +2,7 @@
 
 use super::run::configurations;
 use crate::ast::{self, Bound, TypeKind};
-use crate::diagnostic::wording::list;
+use crate::diagnostic::wording::all_of;
 use crate::diagnostic::{Missing, Subject};
 use crate::dialect::rules::InitialValues;
 use crate::dialect::{self, Dialect, missing};
@@ -244,9 +244,9 @@ impl<'s> Declarations<'s> {
                 Diagnostic::new(
                     Code::W0415,
                     initial.span,
-                    format!("`{}` does not start with this in OpenPLC", name.text),
+                    format!("`{}` does not start with this value in OpenPLC", name.text),
                 )
-                .label("here STruC++ 0.6.1 leaves out arrays and expressions, and takes a number or a name")
+                .label("here STruC++ 0.6.1 ignores arrays and expressions, and applies only a number or a name")
                 .help("assign it in the first scan, or declare it in a FUNCTION_BLOCK"),
             );
         }
@@ -262,7 +262,9 @@ impl<'s> Declarations<'s> {
         }
         resolved.initial = Const::Zero;
         let message = format!("the initial values hold more than {MAX_CONSTANTS} constants");
-        self.report(Diagnostic::new(Code::E0901, decl.span, message).label(format!("{own} of them are here")));
+        self.report(
+            Diagnostic::new(Code::E0901, decl.span, message).label(format!("this declaration has {own} of them")),
+        );
     }
 
     /// `name` is what an anonymous structure or enumeration is called after.
@@ -398,8 +400,10 @@ impl<'s> Declarations<'s> {
                 let families = Family::ALL.map(Family::name);
                 let libraries: Vec<_> = self.names.libraries().collect();
                 let help = match libraries.as_slice() {
-                    [] => format!("the families of blocks are {}", list(&families)),
-                    libraries => format!("the project's libraries are {}, by their files or folders", list(libraries)),
+                    [] => format!("the families of blocks are {}", all_of(&families)),
+                    libraries => {
+                        format!("the project's libraries are {}, by their files or folders", all_of(libraries))
+                    }
                 };
                 let place = around.first().map_or(span, |it| it.span);
                 let known = || self.library_not_there(&full, place);
@@ -460,7 +464,7 @@ impl<'s> Declarations<'s> {
             self.report(
                 Diagnostic::new(Code::E0102, name.span, format!("`{}` is ABSTRACT: it has no instances", name.text))
                     .label("a FUNCTION_BLOCK that extends it is expected here")
-                    .other(span, "declared so here"),
+                    .other(span, "declared as such here"),
             );
             return None;
         }

@@ -18,7 +18,7 @@ impl<'s> Declarations<'s> {
     /// Reports arguments for an instance that is declared, and started, elsewhere.
     pub(super) fn check_is_own_instance(&mut self, block: &VarBlock<'s>, decl: &VarDecl<'s>) {
         let (word, label) = match block.kind {
-            VarKind::InOut => ("VAR_IN_OUT", "it stands for an instance of the caller, which has started"),
+            VarKind::InOut => ("VAR_IN_OUT", "it stands for an instance of the caller, which has already been started"),
             VarKind::External => ("VAR_EXTERNAL", "the instance starts where VAR_GLOBAL declares it"),
             VarKind::Var
             | VarKind::Input
@@ -60,7 +60,7 @@ impl<'s> Declarations<'s> {
                 return;
             }
             let label = match class {
-                Some(_) => "arguments are for a METHOD FB_init, as in CODESYS",
+                Some(_) => "only a METHOD FB_init takes such arguments, in `codesys`",
                 None => "only an instance of a FUNCTION_BLOCK with a METHOD FB_init takes arguments",
             };
             self.report(

@@ -223,8 +223,8 @@ impl<'s> Declarations<'s> {
         for (overlay, start) in overlays.iter().zip(starts).filter(|(_, it)| **it != Const::Zero) {
             initial = self.with_overlay(ty, &initial, overlay, start);
         }
-        let names: Vec<_> = overlays.iter().map(|it| format!("`{}`", it.name)).collect();
-        let doc = Some(format!("The bytes that {} share.", names.join(", ")));
+        let names: Vec<_> = overlays.iter().map(|it| it.name.as_str()).collect();
+        let doc = Some(format!("The bytes that {} share.", crate::diagnostic::wording::all_of(&names)));
         Some(storage("bytes", ty, initial, doc, location))
     }
 

@@ -83,7 +83,7 @@ impl<'s> Checker<'_, 's> {
         self.report(
             Diagnostic::new(Code::E0109, name.span, format!("`{title}` is {}", declared.access.word()))
                 .label(who)
-                .other(declared.span, "declared so here"),
+                .other(declared.span, "declared as such here"),
         );
         None
     }

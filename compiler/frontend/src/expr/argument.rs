@@ -231,7 +231,7 @@ impl<'s> Checker<'_, 's> {
     fn shared_in_out(&mut self, formal: &Formal<'s>, place: &Place, view: Window, span: Span) -> Option<Role> {
         let ty = formal.resolved.ty;
         if self.decl.program.is_open(ty) {
-            self.decl.not_supported(span, "a variable that shares its bits, as an ARRAY[*],");
+            self.decl.not_supported(span, "passing a variable that shares its bits as an ARRAY[*]");
             return None;
         }
         if view.ty != ty {
@@ -329,7 +329,7 @@ impl<'s> Checker<'_, 's> {
     fn kept_variable(&mut self, formal: &Formal<'s>, target: Type, expr: &ast::Expr<'s>) -> Option<Expr> {
         let found = self.variable_or_view(expr, formal.name.text)?;
         if found.view.is_some() {
-            self.decl.not_supported(expr.span, "bits that others share, for a VAR_IN_OUT that METHODs use,");
+            self.decl.not_supported(expr.span, "passing shared bits to a VAR_IN_OUT that METHODs use");
             return None;
         }
         let is_text = match (found.place.ty, target) {
@@ -342,7 +342,7 @@ impl<'s> Checker<'_, 's> {
             return None;
         }
         if self.is_pin(&found) {
-            self.decl.not_supported(expr.span, "a pin of a standard block, for a VAR_IN_OUT that METHODs use,");
+            self.decl.not_supported(expr.span, "passing a pin of a standard block to a VAR_IN_OUT that METHODs use");
             return None;
         }
         self.note_passed(&found.place, expr.span, formal.name.span);

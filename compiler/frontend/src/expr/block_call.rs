@@ -135,7 +135,7 @@ impl<'s> Checker<'_, 's> {
             let names: Vec<_> = info.instructions.iter().map(|it| it.name).collect();
             self.report(
                 Diagnostic::new(Code::E0305, callee, format!("{} cannot be called", article(info.name)))
-                    .label(format!("it is the operand of {}", crate::diagnostic::wording::list(&names)))
+                    .label(format!("it is the operand of {}", crate::diagnostic::wording::all_of(&names)))
                     .help(format!("write `{}({}, …)`", names[0], self.decl.log.sources.text(callee))),
             );
             return None;
@@ -298,7 +298,7 @@ impl<'s> Checker<'_, 's> {
         let name = self.decl.pous[slot].ast.name.text;
         self.report(
             Diagnostic::new(Code::E0305, callee, format!("`{name}` is a CLASS, which has no body"))
-                .label("its METHODs are called"),
+                .label("call one of its METHODs instead"),
         );
         None
     }
@@ -370,9 +370,9 @@ impl<'s> Checker<'_, 's> {
         let message = format!("this call would set `{}` to its initial address again", input.text);
         self.report(
             Diagnostic::new(Code::E0902, callee, message)
-                .label("the call does not give it")
+                .label("the call does not pass it")
                 .other(input.span, "its initial value is an address, and it has `initialize_on_call`")
-                .help(format!("give it: `{} := …`", input.text)),
+                .help(format!("pass it: `{} := …`", input.text)),
         );
     }
 

@@ -6,7 +6,7 @@ use super::enable::Enable;
 use super::generic_call::Called;
 use super::logix_operands;
 use super::operand::Operand;
-use crate::diagnostic::wording::{list, list_of_all};
+use crate::diagnostic::wording::all_of;
 use crate::dialect::{Dialect, missing};
 use crate::index::recorder::Named;
 use crate::names::functions;
@@ -352,8 +352,8 @@ impl<'s> Checker<'_, 's> {
         match nearest(name.text, names.iter().copied()) {
             Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
             None if names.is_empty() => error,
-            None if names.len() == 1 => error.help(format!("its parameter is {}", list(&names))),
-            None => error.help(format!("its parameters are {}", list_of_all(&names))),
+            None if names.len() == 1 => error.help(format!("its parameter is {}", all_of(&names))),
+            None => error.help(format!("its parameters are {}", all_of(&names))),
         }
     }
 }

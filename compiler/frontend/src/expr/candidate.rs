@@ -13,7 +13,7 @@ use super::argument::Parts;
 use super::binding::{Given, Parameter};
 use super::checker::{Checker, Choice};
 use super::enable::is_en;
-use crate::diagnostic::wording::list;
+use crate::diagnostic::wording::all_of;
 use crate::types::coercion::widens;
 use crate::types::signature::{Formal, Signature};
 use crate::{Code, Diagnostic, Span, ast};
@@ -269,7 +269,7 @@ impl<'s> Checker<'_, 's> {
         let shown = |slot: &usize| format!("({})", self.decl.parameter_types(*slot).join(", "));
         let shown: Vec<_> = slots.iter().take(8).map(shown).collect();
         let shown: Vec<_> = shown.iter().map(String::as_str).collect();
-        error.note(format!("the candidates are those of {}", list(&shown).replace(" or ", " and ")))
+        error.note(format!("the candidates are those of {}", all_of(&shown)))
     }
 }
 

@@ -258,7 +258,7 @@ impl<'s> Checker<'_, 's> {
             false => name.to_owned(),
         };
         let names: Vec<_> = enumeration.values.iter().take(4).map(|it| name(&it.name)).collect();
-        let list = crate::diagnostic::wording::list(&names.iter().map(String::as_str).collect::<Vec<_>>());
+        let list = crate::diagnostic::wording::any_of(&names.iter().map(String::as_str).collect::<Vec<_>>());
         Some(if enumeration.values.len() > names.len() { format!("{list}, …") } else { list })
     }
 
@@ -286,7 +286,7 @@ impl<'s> Checker<'_, 's> {
         if !outputs.is_empty() && !text.contains(char::is_whitespace) {
             let names: Vec<_> = outputs.iter().map(|it| format!("{text}.{it}")).collect();
             let names: Vec<_> = names.iter().map(String::as_str).collect();
-            error = error.help(format!("read one of its outputs: {}", crate::diagnostic::wording::list(&names)));
+            error = error.help(format!("read one of its outputs: {}", crate::diagnostic::wording::any_of(&names)));
         }
         self.report(error);
         None

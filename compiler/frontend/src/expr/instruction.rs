@@ -5,7 +5,7 @@ use super::argument::{Parts, Role, as_written};
 use super::binding::{Given, Parameter};
 use super::checker::Checker;
 use super::order::{Held, Written};
-use crate::diagnostic::wording::{article, list_of_all};
+use crate::diagnostic::wording::{all_of, article};
 use crate::names::{bit_instruction, instructions_in};
 use crate::types::signature::pin_place;
 use crate::{Code, Diagnostic, Span, ast};
@@ -105,7 +105,7 @@ impl<'s> Checker<'_, 's> {
         self.bind(name.text, parameters, arguments, |argument| {
             Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
                 .label("unknown parameter")
-                .help(format!("its parameters are {}", list_of_all(&names)))
+                .help(format!("its parameters are {}", all_of(&names)))
         })
     }
 

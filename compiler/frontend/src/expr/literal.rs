@@ -80,7 +80,7 @@ impl<'s> Checker<'_, 's> {
         staunch_runtime::format::time(&mut meant, ty, nanoseconds).ok()?;
         let is_taken = self.decl.dialect(span).takes_lower_units_that_overflow();
         let code = if is_taken { Code::W0525 } else { Code::E0214 };
-        let message = format!("`{unit}` is at least one of the next longer unit");
+        let message = format!("`{unit}` overflows into the next longer unit");
         self.report(
             Diagnostic::new(code, span, message)
                 .label("only the first unit of a TIME may overflow")
@@ -99,7 +99,7 @@ impl<'s> Checker<'_, 's> {
         let meant = format!("{}{digits}", &text[..number]);
         self.report(
             Diagnostic::new(Code::E0005, span, "a number's base is 2, 8 or 16, not 10")
-                .label("CODESYS and TwinCAT have this one, too")
+                .label("only CODESYS and TwinCAT also allow base 10")
                 .help(format!("write `{meant}`"))
                 .fix(span, meant),
         );
@@ -323,7 +323,7 @@ impl<'s> Checker<'_, 's> {
                         format!("several enumerations have a value `{}`", name.text),
                     )
                     .label("which one is meant?")
-                    .help(format!("write {}", crate::diagnostic::wording::list(&names))),
+                    .help(format!("write {}", crate::diagnostic::wording::any_of(&names))),
                 );
                 Some(None)
             }

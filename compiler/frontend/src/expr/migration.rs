@@ -330,16 +330,16 @@ impl<'s> Checker<'_, 's> {
         let negated = if matches!(bare(given).kind, Ast::Binary(..)) { format!("({text})") } else { text.to_owned() };
         let both = match call.block.info().pin_for(PinRole::Up) {
             Some(_) => {
-                "; where both inputs count in one call, a CTUD counts up, then down: `staunch compare` has what to write"
+                "; if both inputs count in one call, a CTUD counts up, then down: `staunch compare` shows what to write"
             }
             None => "",
         };
         self.report(
             Diagnostic::new(Code::W0616, at, format!("`{}` counts down when CD falls", call.name))
                 .label("counted when this becomes FALSE")
-                .note("OpenPLC from v4.1 has an F_TRIG here, up to Editor 4.2.11 at least; before v4.1 it counted the rise")
+                .note("OpenPLC from v4.1 uses an F_TRIG here, at least up to Editor 4.2.11; before v4.1 it counted the rising edge")
                 .help(format!(
-                    "give `NOT {negated}` to count when it rises; where your Editor counts the rise, say \
+                    "pass `NOT {negated}` to count when it rises; if your Editor counts the rising edge, set \
                      `openplc4-cd-edge = \"rising\"` in staunch.toml{both}"
                 )),
         );

@@ -139,7 +139,7 @@ impl<'s> Checker<'_, 's> {
         let message = format!("`{}` is {}, found {has}", formal.name.text, article(&wants));
         self.report(
             Diagnostic::new(Code::E0201, span, message)
-                .label("it takes an array of as many dimensions, of the same elements")
+                .label("it takes an array with the same element type and number of dimensions")
                 .other(formal.name.span, "declared here"),
         );
     }

@@ -270,22 +270,27 @@ impl<'s> Checker<'_, 's> {
             _ if let Some((ty, span)) = long_with_real(sides) => {
                 Some(format!("an LREAL may round it: write `{}_TO_LREAL({})`", ty.name(), text(span)))
             }
-            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_day() && y.is_duration() => {
-                Some(format!("count from its midnight: `{}_TO_{}({a}) {} {b}`", x.name(), point(x), sides.op.text()))
-            }
+            (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_day() && y.is_duration() => Some(format!(
+                "convert the day to its midnight first: `{}_TO_{}({a}) {} {b}`",
+                x.name(),
+                point(x),
+                sides.op.text()
+            )),
             (Some(Type::Elementary(x)), Some(Type::Elementary(y)))
                 if x.is_duration() && y.is(Class::Date) && sides.op == BinaryOp::Add =>
             {
-                Some(format!("write the TIME after it: `{b} + {a}`"))
+                Some(format!("write the TIME second: `{b} + {a}`"))
             }
             (Some(Type::Elementary(x)), Some(Type::Elementary(y))) if x.is_duration() && y.is_duration() => {
                 let units = if x == Elementary::Time { "milliseconds" } else { "nanoseconds" };
                 let number = Elementary::number(x.repr()).name();
                 let (a, b) = (format!("{}_TO_{number}({a})", x.name()), format!("{}_TO_{number}({b})", y.name()));
                 match sides.op {
-                    _ if x != y => Some("make both of one type: `TIME_TO_LTIME(…)`".to_owned()),
+                    _ if x != y => Some("convert both to one type: `TIME_TO_LTIME(…)`".to_owned()),
                     BinaryOp::Div => Some(format!("divide their {units}: `{a} / {b}`")),
-                    BinaryOp::Mod => Some(format!("take their {units}: `{number}_TO_{}({a} MOD {b})`", x.name())),
+                    BinaryOp::Mod => {
+                        Some(format!("compute with their {units}: `{number}_TO_{}({a} MOD {b})`", x.name()))
+                    }
                     _ => None,
                 }
             }
@@ -362,7 +367,7 @@ impl<'s> Checker<'_, 's> {
                     self.report(
                         Diagnostic::new(Code::W0503, op_span, "REAL values are compared for equality")
                             .label("rounding makes equal results differ")
-                            .help("compare the distance: `ABS(a - b) < 0.001`"),
+                            .help("compare their difference with a tolerance: `ABS(a - b) < 0.001`"),
                     );
                 }
                 self.compared_with_zero(op, of, [&a, &b], op_span);

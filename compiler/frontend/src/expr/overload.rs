@@ -188,7 +188,7 @@ impl<'s> Checker<'_, 's> {
         let given = self.bind(name.text, &parameters, arguments, |argument| {
             Diagnostic::new(Code::E0301, argument.span, format!("`{}` has no parameter `{}`", name.text, argument.text))
                 .label("unknown parameter")
-                .help(format!("its parameters are {}", crate::diagnostic::wording::list_of_all(&names)))
+                .help(format!("its parameters are {}", crate::diagnostic::wording::all_of(&names)))
         })?;
         let values: Vec<_> = given.iter().filter_map(value_of).collect();
         if values.len() < names.len() {

@@ -237,7 +237,7 @@ impl<'s> Checker<'_, 's> {
             Root::Local(_) => ("VAR_TEMP", "declare it in VAR, or in the METHOD"),
         };
         self.report(
-            Diagnostic::new(Code::E0109, name.span, format!("`{}` is a {section} of the POU around", name.text))
+            Diagnostic::new(Code::E0109, name.span, format!("`{}` is a {section} of the enclosing POU", name.text))
                 .label("it exists only during a call of the POU itself")
                 .other(variable.name.span, "declared here")
                 .help(help),
@@ -536,7 +536,7 @@ impl<'s> Checker<'_, 's> {
                 Diagnostic::new(
                     Code::E0902,
                     name.span,
-                    format!("reading `{}` through an element whose index is not constant", name.text),
+                    format!("`{}` cannot be read through an element whose index is not constant", name.text),
                 )
                 .label(format!("all instances of `{owner}` share it"))
                 .other(variable.name.span, "declared here")
@@ -789,7 +789,7 @@ impl<'s> Checker<'_, 's> {
             Access::OwnInput(_) if self.decl.dialect(span).uses_inputs() && (is_copy(found) || self.is_start()) => true,
             Access::OwnInput(name) => {
                 self.report(
-                    Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned from inside", name.text))
+                    Diagnostic::new(Code::W0504, span, format!("the input `{}` is assigned inside its POU", name.text))
                         .label("the caller's value is lost")
                         .help("assign to a variable of your own, or declare it VAR_IN_OUT"),
                 );

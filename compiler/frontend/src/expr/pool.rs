@@ -71,7 +71,7 @@ impl<'s> Checker<'_, 's> {
             let name = self.type_name(pool.object);
             self.report(
                 Diagnostic::new(Code::E0304, first.span, format!("a new object of type `{name}` takes no arguments"))
-                    .label("these would be for its METHOD FB_init, which CODESYS has"),
+                    .label("only a METHOD FB_init takes such arguments, in `codesys`"),
             );
             return None;
         }
@@ -155,7 +155,7 @@ impl<'s> Checker<'_, 's> {
         let name = self.type_name(element);
         let help = match self.decl.held_instance(element) {
             Some(_) => format!(
-                "only arrays of values can be made so: declare `{{pool 4}}` before `{name}`, with the largest number of objects, \
+                "only arrays of values can be made this way: declare `{{pool 4}}` before `{name}`, with the largest number of objects, \
                  and make each with `__NEW({name})`"
             ),
             None => format!(
@@ -181,7 +181,7 @@ impl<'s> Checker<'_, 's> {
             self.report(
                 Diagnostic::new(Code::E0413, named.span, format!("`{name}` is ABSTRACT: it has no objects"))
                     .label("a FUNCTION_BLOCK that extends it is expected here")
-                    .other(span, "declared so here"),
+                    .other(span, "declared as such here"),
             );
             return None;
         }

@@ -107,7 +107,7 @@ impl<'s> Checker<'_, 's> {
                 (true, ast::ExprKind::Name(name)) => {
                     let name = name.text;
                     error
-                        .label("a REFERENCE TO is followed by itself")
+                        .label("a REFERENCE TO is dereferenced automatically")
                         .help(format!("write `{name}` without `^`"))
                         .fix(span, name)
                 }
@@ -204,7 +204,7 @@ impl<'s> Checker<'_, 's> {
         }
         if self.is_counter(&found.place, found.view) {
             self.report(
-                Diagnostic::new(Code::E0211, expr.span, "the counter of a loop around has no address")
+                Diagnostic::new(Code::E0211, expr.span, "the counter of an enclosing loop has no address")
                     .label("the loop controls it"),
             );
             return None;
@@ -846,7 +846,7 @@ impl<'s> Checker<'_, 's> {
     fn advance(&mut self, reference: Operand, (by, place): (Operand, Span), op: BinaryOp, span: Span) -> Option<Expr> {
         let Operand::Typed(reference) = reference else { return None };
         if self.decl.interface_of(reference.ty).is_some() {
-            self.report_interface(reference.ty, "a reference is moved by bytes", span);
+            self.report_interface(reference.ty, "only a reference can be moved by bytes", span);
             return None;
         }
         let by = match by.cut() {

@@ -58,7 +58,7 @@ impl<'s> Checker<'_, 's> {
             ),
             Some(pin) => (
                 "its count is lost each time",
-                format!("reset it in the call that counts, by a condition: `{} := stop`", pin.name),
+                format!("reset it in the call that counts, with a condition: `{} := stop`", pin.name),
             ),
         };
         let message = format!("`{name}` is reset in every scan that calls it: {effect}");

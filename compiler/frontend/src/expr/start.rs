@@ -472,7 +472,7 @@ impl<'s> Checker<'_, 's> {
             let count = lists.lists.len();
             self.report(
                 Diagnostic::new(Code::E0206, lists.span, format!("{count} lists of arguments for {total} elements"))
-                    .label("FB_init of each element has one"),
+                    .label("FB_init of each element needs its own list"),
             );
             return;
         }

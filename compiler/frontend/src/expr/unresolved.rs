@@ -2,7 +2,7 @@
 
 use super::checker::{Checker, Context};
 use crate::diagnostic::Missing;
-use crate::diagnostic::wording::{article, list, list_of_all};
+use crate::diagnostic::wording::{all_of, any_of, article};
 use crate::dialect::{Dialect, missing};
 use crate::names::functions;
 use crate::spelling::{Key, nearest};
@@ -35,7 +35,7 @@ pub(crate) fn no_such_block(family: Family, name: ast::Name<'_>) -> Diagnostic {
         .label(format!("not a block of {owner}"));
     match nearest(name.text, names.iter().copied()).filter(|near| near.len() == name.text.len()) {
         Some(near) => error.help(format!("did you mean `{near}`?")).fix(name.span, near),
-        None => error.help(format!("{owner} has {}", list(&names))),
+        None => error.help(format!("{owner} has {}", all_of(&names))),
     }
 }
 
@@ -48,9 +48,13 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: a
     let qualified: Vec<_> = owners.iter().map(|it| format!("{}.{}", it.name(), name.text)).collect();
     let qualified: Vec<_> = qualified.iter().map(String::as_str).collect();
     let others = dialects_of(&owners);
+    let have = match others.as_slice() {
+        [one] => format!("the dialect `{one}` has"),
+        several => format!("the dialects {} have", all_of(several)),
+    };
     let error = Diagnostic::new(Code::E0309, name.span, without)
         .label(format!("no block has this name under `--dialect {}`", dialect.name()))
-        .note(format!("the dialect {} has it", list(&others)));
+        .note(format!("{have} it"));
     // Who names a structure of Logix calls its instructions too, which a family's name has to precede as well.
     Some(match (others.as_slice(), owners.as_slice()) {
         // What is written in their place is another call, which `compare` says.
@@ -62,9 +66,9 @@ pub(crate) fn block_of_another_dialect(dialect: Dialect, is_moved: bool, name: a
         _ if is_moved => error.help(format!(
             "in a program for `{}`, which `--against` compares with this one, name the family: {}",
             dialect.name(),
-            list(&qualified)
+            any_of(&qualified)
         )),
-        _ => error.help(format!("name the family: {}", list(&qualified))),
+        _ => error.help(format!("name the family: {}", any_of(&qualified))),
     })
 }
 
@@ -80,14 +84,18 @@ pub(crate) fn unknown_pin(dialect: Dialect, block: BlockId, name: ast::Name<'_>)
     let meant = other_dialects_pin(block, name.text).or_else(|| nearest(name.text, pins.iter().copied()));
     let error = match meant {
         Some(pin) => error.help(format!("did you mean `{pin}`?")).fix(name.span, pin),
-        None => error.help(format!("its pins are {}", list_of_all(&pins))),
+        None => error.help(format!("its pins are {}", all_of(&pins))),
     };
     let dialects = dialects_with_pin(block, name.text);
     if dialects.is_empty() {
         return error;
     }
     let pin = name.text.to_ascii_uppercase();
-    error.note(format!("the pin is called `{pin}` where a bare `{}` is that of {}", info.name, list(&dialects)))
+    error.note(format!(
+        "the pin is called `{pin}` where a bare `{}` means the block of {}",
+        info.name,
+        any_of(&dialects)
+    ))
 }
 
 /// This block's name for a pin that another system calls `name`.
@@ -269,7 +277,7 @@ impl<'s> Checker<'_, 's> {
             let full: Vec<_> =
                 slots.iter().map(|it| format!("{}.{}", self.decl.types[*it].decl.name.text, name.text)).collect();
             let names: Vec<_> = full.iter().map(String::as_str).collect();
-            let help = format!("the enumeration has the attribute 'qualified_only': write {}", list(&names));
+            let help = format!("the enumeration has the attribute 'qualified_only': write {}", any_of(&names));
             let error = error.help(help);
             self.report(match full.as_slice() {
                 [one] => error.fix(name.span, one.clone()),

@@ -12,11 +12,11 @@ pub(crate) fn report(declarations: &mut Declarations<'_>) {
             continue;
         }
         let system = rule.dialect.name().to_ascii_uppercase();
-        let message = format!("{} is otherwise on {system}: {}", rule.uses.words(), rule.what);
+        let message = format!("{system} has a different rule for {}: {}", rule.uses.words(), rule.what);
         declarations.report(
             Diagnostic::new(Code::W0529, span, message)
-                .label("here it is as in `iec`")
-                .help(format!("write it in another way, if that matters ({})", rule.evidence)),
+                .label("Staunch follows `iec` here")
+                .help(format!("rewrite it if the difference matters (source: {})", rule.evidence)),
         );
     }
 }

@@ -233,7 +233,7 @@ impl<'s> Declarations<'s> {
                 let error = Diagnostic::new(Code::E0101, target.span, "this is not a variable of an instance")
                     .label(format!("expected a path that starts with {from}"));
                 self.report(match instances.first() {
-                    Some(_) => error.help(format!("there is {}", crate::diagnostic::wording::list(&instances))),
+                    Some(_) => error.help(format!("expected {}", crate::diagnostic::wording::any_of(&instances))),
                     None => error.help("run a PROGRAM in it: `PROGRAM run : Main;`"),
                 });
                 continue;
@@ -430,7 +430,7 @@ impl<'s> Declarations<'s> {
             Diagnostic::new(
                 Code::E0303,
                 first.span,
-                format!("the PROGRAM `{name}` gets no variable for `{}`", first.text),
+                format!("the PROGRAM `{name}` has no variable connected to `{}`", first.text),
             )
             .label("a VAR_IN_OUT of a PROGRAM must be connected to a global variable")
             .help(format!(
@@ -527,7 +527,7 @@ impl<'s> Declarations<'s> {
                     error = error.help(format!("did you mean `{near}`?")).fix(instance.program.span, near.as_str());
                 } else if let [only] = names.as_slice() {
                     let only = self.names.in_full(self.names.space_of(only.span), only.text);
-                    error = error.label("unknown PROGRAM").help(format!("the one that is declared is `{only}`"));
+                    error = error.label("unknown PROGRAM").help(format!("the only PROGRAM is `{only}`"));
                 }
                 self.report(error);
                 return None;
@@ -612,11 +612,12 @@ impl<'s> Declarations<'s> {
                 // A value that is not a constant has been reported.
                 ("INTERVAL", None) => {}
                 ("INTERVAL", Some(_)) => self.report(
-                    Diagnostic::new(Code::E0201, expr.span, "INTERVAL is a TIME above zero").help("write `T#10ms`"),
+                    Diagnostic::new(Code::E0201, expr.span, "INTERVAL must be a TIME above zero")
+                        .help("write `T#10ms`"),
                 ),
                 ("PRIORITY", Some(value)) => match value.as_integer().and_then(|it| u32::try_from(it).ok()) {
                     Some(priority) => timing.priority = priority,
-                    None => self.error(Code::E0201, expr.span, "PRIORITY is a whole number from 0"),
+                    None => self.error(Code::E0201, expr.span, "PRIORITY must be a whole number, 0 or more"),
                 },
                 ("PRIORITY", None) => {}
                 _ => self.report(

@@ -110,7 +110,7 @@ fn report_recursion(declarations: &mut Declarations<'_>, cycle: &[usize]) {
     let way: Vec<_> = slots.iter().chain(&slots[..1]).map(|it| declarations.title(*it)).collect();
     declarations.report(
         Diagnostic::new(Code::E0310, first.span, format!("`{}` calls itself", way[0]))
-            .label("recursion has no limit on its stack")
+            .label("recursion could need an unlimited amount of stack")
             .note(format!("the chain of calls is {}", way.join(" -> ")))
             .help("write it as a loop"),
     );

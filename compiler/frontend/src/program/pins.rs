@@ -31,7 +31,7 @@ impl Declarations<'_> {
                 Diagnostic::new(
                     Code::E0902,
                     span,
-                    "giving a pin to a VAR_IN_OUT in a program with references is not supported yet",
+                    "passing a pin to a VAR_IN_OUT in a program with references is not supported yet",
                 )
                 .label("a pin of a standard block has no address")
                 .help("give a variable of your own, and assign it to the pin after the call"),

@@ -224,7 +224,7 @@ fn report_without_fixture<'s>(pou: &Pou<'s>, marks: &Marks<'s>, diagnostics: &mu
         let class = pou.name.text;
         diagnostics.push(
             Diagnostic::new(Code::W0102, test.span, format!("this test does not run: `{class}` is not a fixture"))
-                .label("the METHOD after it is never called")
+                .label("the METHOD that follows it is never called")
                 .help(format!("write `{{TestFixture}}` before `CLASS {class}`")),
         );
     }

@@ -482,7 +482,7 @@ impl<'s> Declarations<'s> {
                 let name = self.types[at].decl.name;
                 self.report(
                     Diagnostic::new(Code::E0402, name.span, format!("the type `{}` contains itself", name.text))
-                        .label("its size would be endless"),
+                        .label("its size would be infinite"),
                 );
                 None
             }
@@ -588,7 +588,7 @@ impl<'s> Declarations<'s> {
         self.report(
             Diagnostic::new(Code::E0108, name.span, format!("`{}` may mean several things here", name.text))
                 .label("which one is meant?")
-                .help(format!("write {}", crate::diagnostic::wording::list(&names))),
+                .help(format!("write {}", crate::diagnostic::wording::any_of(&names))),
         );
     }
 
@@ -698,7 +698,7 @@ fn own_type(pou: &ast::Pou<'_>, all: &[PouSlot<'_>]) -> Diagnostic {
         }
     }
     Diagnostic::new(Code::E0402, name.span, format!("`{}` contains an instance of itself", name.text))
-        .label("its size would be endless")
+        .label("its size would be infinite")
 }
 
 /// Where a block has a variable of the named type: an in-out, or one that it holds.

@@ -3,7 +3,7 @@
 use super::declarations::{Declarations, PouSlot, Slot};
 use super::generic::{Instance, class_named};
 use super::table::{scalar_initial, struct_initial};
-use crate::diagnostic::{Label, wording::list};
+use crate::diagnostic::{Label, wording::all_of};
 use crate::names::{Found, Sense};
 use crate::{Code, Diagnostic, Span, ast};
 use staunch_ir::{Const, Elementary, Type};
@@ -97,7 +97,7 @@ impl<'s> Declarations<'s> {
         }
         if *count > MAX_INSTANCES {
             let name = self.pous[of].ast.name.text;
-            let message = format!("`{name}` is called with more than {MAX_INSTANCES} sets of types");
+            let message = format!("`{name}` is called with more than {MAX_INSTANCES} combinations of types");
             self.report(Diagnostic::new(Code::E0901, call, message).label("each would be a separate FUNCTION"));
             return None;
         }
@@ -143,7 +143,7 @@ impl<'s> Declarations<'s> {
         let name = self.pous[way[0]].ast.name;
         let way: Vec<_> = way.iter().chain([&way[0]]).map(|it| self.pous[*it].ast.name.text).collect();
         let error = Diagnostic::new(Code::E0310, name.span, format!("`{}` calls itself", name.text))
-            .label("recursion has no limit on its stack")
+            .label("recursion could need an unlimited amount of stack")
             .other(last, format!("`{again}` is called here"))
             .note(format!("the chain of calls is {}", way.join(" -> ")))
             .help("write it as a loop");
@@ -203,7 +203,7 @@ impl<'s> Declarations<'s> {
             let types: Vec<_> =
                 types.map(|(word, ty)| format!("{} = {}", word.name(), self.program.type_name(*ty))).collect();
             let types: Vec<_> = types.iter().map(String::as_str).collect();
-            let text = format!("`{}` is called here with {}", pou.ast.name.text, list(&types).replace(" or ", " and "));
+            let text = format!("`{}` is called here with {}", pou.ast.name.text, all_of(&types));
             calls.push(Label { span: instance.call, text });
             at = instance.within;
         }

@@ -1,7 +1,7 @@
 //! A member that a structure, an enumeration or an instance does not have, and what was probably meant.
 
 use super::declarations::Declarations;
-use crate::diagnostic::wording::{article, list_of_all};
+use crate::diagnostic::wording::{all_of, article};
 use crate::dialect::{Dialect, missing};
 use crate::spelling::{Key, nearest};
 use crate::{Code, Diagnostic, Span, ast};
@@ -102,6 +102,6 @@ impl<'s> Declarations<'s> {
             | Type::Array(_)
             | Type::Block(_) => Vec::new(),
         };
-        (1..=12).contains(&names.len()).then(|| list_of_all(&names))
+        (1..=12).contains(&names.len()).then(|| all_of(&names))
     }
 }

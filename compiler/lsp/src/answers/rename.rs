@@ -23,7 +23,7 @@ fn renamable(analysis: &Analysis, place: Place) -> Result<DefId, String> {
     let name = analysis.text(span);
     let id = analysis.definition_at(place).ok_or_else(|| format!("`{name}` is not declared in a source"))?;
     if OF_THE_SYSTEM.iter().any(|it| it.eq_ignore_ascii_case(name)) {
-        return Err(format!("`{name}` has its meaning by its name"));
+        return Err(format!("`{name}` has a fixed meaning and cannot be renamed"));
     }
     let definition = analysis.index.get(id);
     // The title of a TEST is a text, and its parts are words.

@@ -52,7 +52,7 @@ impl<'p> Body<'p> {
     }
 }
 
-/// Whether two places are written alike, and are elements at the counter: one of the two is stored to.
+/// Whether two places have the same form, and are elements at the counter: one of the two is stored to.
 fn is_same_element(a: &Place, b: &Place) -> bool {
     let same = |(a, b): (&Projection, &Projection)| match (a, b) {
         (Projection::Field(a), Projection::Field(b)) => a == b,

@@ -54,7 +54,7 @@ macro_rules! codes {
 // declarations; 05xx statements; 06xx what a move between systems changes, by the number that
 // `docs/compare.md` gives it; 09xx limits and what is not supported.
 codes! {
-    E0001 Error "the text does not parse";
+    E0001 Error "a syntax error";
     E0002 Error "an unknown character";
     E0003 Error "a comment or pragma is not closed";
     E0004 Error "a string is not closed";
@@ -97,7 +97,7 @@ codes! {
     E0202 Error "value does not fit";
     E0203 Error "conversion needed";
     E0204 Error "operator does not take these types";
-    E0205 Error "not a constant";
+    E0205 Error "a constant is needed";
     E0206 Error "wrong length or count";
     E0207 Error "constant expression faults";
     E0208 Error "constant index out of range";
@@ -106,7 +106,7 @@ codes! {
     E0211 Error "a reference is needed, or cannot be made";
     E0212 Error "a reference that outlives what it refers to";
     E0214 Error "a lower unit of a TIME overflows";
-    W0202 Warning "a text is cut";
+    W0202 Warning "a string is cut off";
     E0301 Error "unknown pin or parameter";
     E0302 Error "wrong number of arguments";
     E0303 Error "argument missing";
@@ -130,14 +130,14 @@ codes! {
     E0402 Error "a declaration depends on itself";
     E0403 Error "not allowed in this declaration";
     E0405 Error "VAR_EXTERNAL differs from its global";
-    E0406 Error "array bounds";
-    E0407 Error "base of a subrange or enumeration";
+    E0406 Error "invalid array bounds";
+    E0407 Error "invalid base of a subrange or enumeration";
     E0408 Error "empty type";
-    E0409 Error "direct address";
+    E0409 Error "invalid direct address";
     E0410 Error "overlapping addresses";
-    E0411 Error "generic type";
+    E0411 Error "misplaced generic type";
     E0412 Error "a member that cannot share its bytes";
-    E0413 Error "objects of a pool";
+    E0413 Error "a pool is missing or invalid";
     E0501 Error "assignment to a constant";
     E0503 Error "assignment to a FOR counter";
     E0504 Error "assignment to an output from outside";
@@ -149,8 +149,8 @@ codes! {
     E0510 Error "empty range of CASE labels";
     E0511 Error "assignment to an input address";
     E0512 Error "an assignment used as a value";
-    E0513 Error "exception handling";
-    E0514 Error "jumps";
+    E0513 Error "invalid exception handling";
+    E0514 Error "a jump that is not possible";
     E0515 Error "a mistake in a sequential function chart";
     E0901 Error "too large";
     E0902 Error "not supported yet";
@@ -186,23 +186,23 @@ codes! {
     W0515 Warning "a subrange wider than the array that it indexes";
     W0516 Warning "a result that is never assigned";
     W0517 Warning "a standard name is declared again";
-    W0518 Warning "a variable alone";
+    W0518 Warning "a variable alone as a statement";
     W0520 Warning "the size of a pointer";
     W0521 Warning "a shift that C leaves undefined";
     W0522 Warning "a stimulus that the program overwrites";
     W0523 Warning "division by the constant 0";
-    W0524 Warning "immediate values give more than a DINT holds";
+    W0524 Warning "a result of immediate values that does not fit a DINT";
     W0525 Warning "a lower unit of a TIME overflows";
     W0526 Warning "a body reads its own EN";
     W0527 Warning "a check that CODESYS calls implicitly";
     W0528 Warning "a diagram that other versions execute in another order";
-    W0529 Warning "the system does it otherwise";
+    W0529 Warning "the system behaves differently";
     W0530 Warning "an assignment as a condition";
     W0531 Warning "a unit that ends with its file";
     W0532 Warning "a FOR loop that takes no turn";
     W0533 Warning "a CASE label that is a difference";
     W0602 Warning "a count is compared beyond its preset";
-    W0608 Warning "an unsigned value is compared with a number below zero";
+    W0608 Warning "an unsigned value is compared with a negative number";
     W0609 Warning "a pin has another name on this system";
     W0612 Warning "a counter's own output resets it";
     W0613 Warning "a preset that changes during a load";

@@ -1,7 +1,7 @@
 //! Words of messages: lists and articles.
 
 /// `a`, `a or b`, `a, b or c`, each in backticks.
-pub fn list(names: &[&str]) -> String {
+pub fn any_of(names: &[&str]) -> String {
     let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.as_slice() {
         [] => String::new(),
@@ -11,11 +11,11 @@ pub fn list(names: &[&str]) -> String {
 }
 
 /// `a`, `a and b`, `a, b and c`: all of them.
-pub fn list_of_all(names: &[&str]) -> String {
+pub fn all_of(names: &[&str]) -> String {
     let quoted: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.as_slice() {
         [init @ .., last] if !init.is_empty() => format!("{} and {last}", init.join(", ")),
-        _ => list(names),
+        _ => any_of(names),
     }
 }
 

@@ -306,7 +306,7 @@ pub fn missing_end(input: &mut In<'_, '_, '_>, end: Kind, opened: Span) {
     let inner = input.state().misaligned.filter(|it| it.start > opened.start);
     if let Some(inner) = inner {
         let inner_opener = input.text(inner).to_ascii_uppercase();
-        it = it.other(inner, format!("or this {inner_opener} is not: the end after it is in another column"));
+        it = it.other(inner, format!("or this {inner_opener} is not closed: the END after it is in another column"));
     }
     let it = it.help(help);
     let has_errors = input.state().diagnostics.iter().any(|it| it.severity == Severity::Error);
@@ -350,7 +350,7 @@ pub fn else_if(input: &mut In<'_, '_, '_>, words: Span, opened: Span) {
 pub fn until_after_end(whole: Span, opened: Span, condition: &str) -> Diagnostic {
     let meant = format!("UNTIL {condition} END_REPEAT");
     Diagnostic::new(Code::E0001, whole, "UNTIL and its condition come before END_REPEAT")
-        .label("these are in the other order")
+        .label("these are in the wrong order")
         .other(opened, "this REPEAT ends here")
         .help(format!("write `{meant}`"))
         .fix(whole, meant)
@@ -462,7 +462,7 @@ pub fn too_many_bases(span: Span, kind: PouKind) -> Diagnostic {
     };
     Diagnostic::new(Code::E0403, span, message)
         .label("this is one too many")
-        .help("delete it; only INTERFACEs may be several")
+        .help("delete it: only IMPLEMENTS can name several")
 }
 
 /// `INTERFACE a IMPLEMENTS b`

@@ -285,7 +285,7 @@ pub fn point_first(input: &mut In<'_, '_, '_>) -> bool {
     if is_third {
         input.report(
             Diagnostic::new(Code::E0001, point, "a range is written with two dots")
-                .label("this is a third one")
+                .label("this is a third dot")
                 .help("write `first..last`")
                 .fix(point, ""),
         );

@@ -190,8 +190,8 @@ impl<'t> Scl<'t> {
             let message = format!("the source does not say which event starts `{name}`");
             self.refuse(place.start..place.start, message);
             self.out.help(
-                "write code that runs at intervals as a PROGRAM that a TASK of a CONFIGURATION runs; code of an event as a FUNCTION_BLOCK that \
-                 `Main` calls where it happens",
+                "write code that runs at intervals as a PROGRAM that a TASK of a CONFIGURATION runs; code for an event as a FUNCTION_BLOCK that \
+                 `Main` calls when the event occurs",
             );
         }
         self.replace(place.clone(), &name);

@@ -1,10 +1,10 @@
-//! The scan's time: blocks that read it, let it pass in a unit test, and decide what is due.
+//! The scan's time: blocks that read it, advance it in a unit test, and decide what is due.
 
 use crate::block::pins;
 use crate::{Context, Location, Time};
 
-/// Lets the time `in_` pass, in the midst of a scan: what `ADVANCE_TIME` in a TEST calls. A negative time is
-/// none.
+/// Lets the time `in_` pass within a scan: `ADVANCE_TIME` in a TEST calls it. A negative time counts
+/// as 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AdvanceTime {
@@ -57,7 +57,7 @@ pins!([] Clock {
     Memory {}
 });
 
-/// Notes a division by zero after which the program continues, with its place in the source.
+/// Records a division by zero after which the program continues, with its place in the source.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MinorFault {
@@ -67,7 +67,7 @@ pub struct MinorFault {
 }
 
 impl MinorFault {
-    /// One call: sets the place and notes the fault.
+    /// One call: sets the place and records the fault.
     #[inline]
     pub fn call(&mut self, file: u16, column: u16, line: u32, cx: &Context) {
         (self.file, self.column, self.line) = (file, column, line);
@@ -85,8 +85,8 @@ pins!([] MinorFault {
     Input { file: UINT = "FILE", column: UINT = "COLUMN", line: UDINT = "LINE" }
 });
 
-/// A scan's information about itself: `first` in the first one after a start, and in `cycle` the time from one to the
-/// next; 0 where the host does not say it.
+/// Information about the scan: `first` is TRUE in the first scan after a start, and `cycle` is the time between two
+/// scans, or 0 if the host does not set it.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScanInfo {
@@ -114,8 +114,9 @@ pins!([] ScanInfo {
     Memory {}
 });
 
-/// When a TASK with SINGLE and INTERVAL is due (IEC 61131-3, 6.8.2): `q` in each call in which `single` rises, and
-/// while it is FALSE in the first call from each multiple of `interval` on. What falls due while it is TRUE is left out.
+/// When a TASK with SINGLE and INTERVAL is due (IEC 61131-3, 6.8.2): `q` is TRUE in each call in which `single` rises,
+/// and, while `single` is FALSE, in the first call at or after each multiple of `interval`. Multiples that pass while it is
+/// TRUE are skipped.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TaskTurn {
@@ -125,12 +126,12 @@ pub struct TaskTurn {
     pub q: bool,
     /// Memory: `single` in the last call.
     pub single_before: bool,
-    /// Memory: the multiple of `interval` that comes next.
+    /// Memory: the next multiple of `interval`.
     pub next: Time,
 }
 
 impl TaskTurn {
-    /// One call: sets the inputs and looks at the time.
+    /// One call: sets the inputs and checks the time.
     #[inline]
     pub fn call(&mut self, single: bool, interval: Time, cx: &Context) {
         (self.single, self.interval) = (single, interval);

@@ -22,6 +22,6 @@ pub type Sr = iec::Sr;
 /// `RS` with the pins SET and RESET1.
 pub type Rs = iec::Rs;
 
-/// `CTU` as the sentence "counts up to PV" has it, for the option `ctu-stop-at-pv`: an edge counts
+/// `CTU` according to the sentence "counts up to PV", for the option `ctu-stop-at-pv`: an edge counts
 /// only while `cv < pv`.
 pub type CtuStopAtPv<T> = openplc::Ctu<T>;

@@ -1,11 +1,11 @@
 //! Horner Cscape, IEC editor with Enhanced IEC. Its counters have no edge memory: they count in
-//! every call whose input is TRUE. They stop at their goal, and `q` says literally that it is
-//! reached, so a `pv` moved below `cv` drops it.
+//! every call whose input is TRUE. They stop at their goal, and `q` is TRUE only while `cv` equals it,
+//! so `q` becomes FALSE if `pv` is changed to a value below `cv`.
 
 use crate::Context;
 use crate::block::pins;
 
-/// `CTU`: while `cu`, each call counts up until `cv` reaches `pv`; `q` while `cv = pv`. Reset
+/// `CTU`: while `cu` is TRUE, each call counts up until `cv` reaches `pv`; `q` while `cv = pv`. Reset
 /// wins over counting.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -39,8 +39,8 @@ pins!([] Ctu {
     Output { q: BOOL = "Q" as Done, cv: INT = "CV" as Count }
 });
 
-/// `CTD`: while `cd`, each call counts down until `cv` reaches 0; `q` while `cv = 0`. While
-/// `load`, `cv` is `pv`: load wins over counting. A negative `cv` stays.
+/// `CTD`: while `cd` is TRUE, each call counts down until `cv` reaches 0; `q` while `cv = 0`. While
+/// `load` is TRUE, `cv` is `pv`: load wins over counting. A negative `cv` stays.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ctd {

@@ -1,10 +1,10 @@
-//! R_TRIG and F_TRIG (IEC 61131-3, edition 3, table 44), and those of other systems.
+//! R_TRIG and F_TRIG (IEC 61131-3, edition 3, table 44), and their variants in other systems.
 
 use crate::Context;
 use crate::block::pins;
 
-/// `R_TRIG`: `q` in the call in which `clk` becomes TRUE; a `clk` that is TRUE in the first call
-/// counts as one.
+/// `R_TRIG`: `q` is TRUE in the call in which `clk` becomes TRUE; a `clk` that is TRUE in the first call
+/// counts as an edge.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RTrig {
@@ -36,8 +36,8 @@ pins!([] RTrig {
     Memory { clk_before: BOOL = "clk_before" }
 });
 
-/// `F_TRIG`: `q` in the call in which `clk` becomes FALSE; a `clk` that is FALSE in the first
-/// call does not count as one.
+/// `F_TRIG`: `q` is TRUE in the call in which `clk` becomes FALSE; a `clk` that is FALSE in the first
+/// call does not count as an edge.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FTrig {

@@ -1,7 +1,7 @@
 //! The counters of Autonomy Edge as its page documents them, and the blocks that all families share.
 //!
-//! The counters count rising edges; an input that is TRUE in the first call is one. The edge
-//! memory follows the input in every call, so an edge under reset or load is used up. Counting
+//! The counters count rising edges; an input that is TRUE in the first call counts as one. The edge
+//! memory follows the input in every call, so an edge during a reset or load is used up. Counting
 //! stops at the limits of the type.
 
 pub use super::bistable::*;
@@ -39,7 +39,7 @@ counts! {
     u8 i8 saturating_add_signed u16 i16 saturating_add_signed u32 i32 saturating_add_signed u64 i64 saturating_add_signed
 }
 
-/// `CTU`: counts up on each rising edge of `cu`, also past `pv`; `q` while `cv >= pv`. Reset
+/// `CTU`: counts up on each rising edge of `cu`, even past `pv`; `q` while `cv >= pv`. Reset
 /// wins over counting; `cv` stops at the type's maximum instead of wrapping.
 ///
 /// ```
@@ -129,7 +129,7 @@ pins!([T: Count] Ctd<T> {
 });
 
 /// `CTUD`: counts up on each rising edge of `cu` and down on each of `cd`; both in one call
-/// leave `cv` alone, also at the limits. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset wins
+/// leave `cv` unchanged, even at the limits. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset wins
 /// over load, load over counting; `cv` stops at the limits of the type.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

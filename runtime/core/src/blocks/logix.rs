@@ -13,7 +13,7 @@ pub use timer::Timer;
 use crate::block::pins;
 
 /// `COUNTER`, the tag that `CTU`, `CTD` and `RES` share. `acc` wraps at its limits: past the
-/// upper one `ov` is set, past the lower one `un`, and the way back clears it again.
+/// upper one `ov` is set, past the lower one `un`, and wrapping back clears the flag again.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counter {
@@ -29,8 +29,8 @@ pub struct Counter {
 }
 
 impl Counter {
-    /// `CTU`: counts up when the rung goes TRUE, also past `pre`, and then or while it stays TRUE
-    /// sets `dn` anew. Returns the rung.
+    /// `CTU`: counts up when the rung goes TRUE, even past `pre`, and updates `dn` in every call
+    /// in which the rung is TRUE. Returns the rung.
     #[inline]
     pub fn ctu(&mut self, rung: bool) -> bool {
         let edge = rung & !self.cu;
@@ -40,8 +40,8 @@ impl Counter {
         rung
     }
 
-    /// `CTD`: counts down when the rung goes TRUE, also below 0, and then or while it stays TRUE
-    /// sets `dn` anew: it drops when `acc` falls below `pre`. Returns the rung.
+    /// `CTD`: counts down when the rung goes TRUE, even below 0, and updates `dn` in every call
+    /// in which the rung is TRUE: it becomes FALSE when `acc` falls below `pre`. Returns the rung.
     #[inline]
     pub fn ctd(&mut self, rung: bool) -> bool {
         let edge = rung & !self.cd;
@@ -91,8 +91,8 @@ pins!([] Counter {
 
 /// `FBD_COUNTER`, the tag of the instruction `CTUD`. A program sets its inputs as members.
 ///
-/// The vendor's tag starts with `enable_in` TRUE; [`new`](Self::new) is all zero, and whoever
-/// makes an instance sets it.
+/// The vendor's tag starts with `enable_in` TRUE; [`new`](Self::new) is all zero, so set it after
+/// you create an instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FbdCounter {
@@ -161,7 +161,7 @@ pins!([] FbdCounter {
     Memory { cu_enable_before: BOOL = "cu_enable_before", cd_enable_before: BOOL = "cd_enable_before" }
 });
 
-/// A count with the flags that say which limit it has wrapped past.
+/// A count with the flags that show past which limit it has wrapped.
 struct Tally<'a> {
     acc: &'a mut i32,
     ov: &'a mut bool,

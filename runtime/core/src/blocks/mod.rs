@@ -2,8 +2,8 @@
 //! memory, with no branch in a step where a select will do. Each family's module holds what its
 //! vendor defines; `iec` also holds what all of them share.
 //!
-//! A block's `call` sets the inputs and runs one step; `step` runs one with the inputs as they
-//! are, and takes the context whether it needs it or not, so that native code can call any.
+//! A block's `call` sets the inputs and runs one step; `step` runs one step with the present inputs,
+//! and takes the context whether it needs it or not, so that native code can call any block.
 
 pub mod codesys;
 pub mod cscape;

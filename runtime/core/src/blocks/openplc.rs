@@ -1,8 +1,8 @@
 //! OpenPLC v3, OpenPLC Editor and Beremiz, whose library is MATIEC's. Its counters are those of
-//! [`iec`](super::iec) but for one rule: an edge counts up only while `cv < pv`, and down only
-//! while `cv > 0`, as the count was before the call. A count that is beyond already stays. Its
-//! timers look at the time in the call after they start. Its `F_TRIG` before 2024-12 is the second
-//! edition's text, which sees an edge in a first call with FALSE.
+//! [`iec`](super::iec) except for one rule: an edge counts up only while `cv < pv`, and down only
+//! while `cv > 0`, by the count before the call. A count that is already beyond stays. Its
+//! timers first check the time in the call after they start. Its `F_TRIG` before 2024-12 is that of the
+//! standard's second edition, which sees an edge in a first call with FALSE.
 
 use super::iec::Count;
 use crate::block::pins;
@@ -95,7 +95,7 @@ pins!([T: Count] Ctd<T> {
 });
 
 /// `CTUD`: counts up on each rising edge of `cu` while `cv < pv`, down on each of `cd` while
-/// `cv > 0`; both in one call leave `cv` alone. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset
+/// `cv > 0`; both in one call leave `cv` unchanged. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset
 /// wins over load, load over counting.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -183,7 +183,7 @@ macro_rules! timers {
                 self.in_before = self.in_;
             }
 
-            /// What a call does while it runs: whether it has run for `pt`. A negative `pt` has passed.
+            /// One call while it runs: whether it has run for `pt`. A negative `pt` counts as passed.
             #[inline]
             fn measure(&mut self, now: Time) {
                 self.over = self.start.saturating_add(self.pt) <= now;
@@ -203,9 +203,9 @@ macro_rules! timers {
 timers! {
     /// `TON`: `q` once `in_` has been TRUE for `pt`, in a call after the one with the rise: with a `pt` of 0, in the second.
     Ton on;
-    /// `TOF`: `q` while `in_`, and for `pt` after it falls, the call with the fall always among it.
+    /// `TOF`: `q` while `in_`, and for `pt` after it falls, always including the call with the fall.
     Tof off;
-    /// `TP`: a rise gives a pulse of `pt`, the call with the rise always among it.
+    /// `TP`: a rising edge gives a pulse of `pt`, which always includes the call with the edge.
     Tp pulse;
 }
 
@@ -252,8 +252,8 @@ impl Tp {
     }
 }
 
-/// `F_TRIG` before 2024-12: `q` in the call in which `clk` becomes FALSE, and in a first call in which it is FALSE: what is
-/// remembered is `NOT clk`, which starts as FALSE (IEC 61131-3, second edition, 2.5.2.3.2).
+/// `F_TRIG` before 2024-12: `q` in the call in which `clk` becomes FALSE, and in a first call in which it is FALSE: its
+/// memory is `NOT clk`, which starts as FALSE (IEC 61131-3, second edition, 2.5.2.3.2).
 ///
 /// ```
 /// let mut falling = staunch_runtime::openplc::FTrig::default();

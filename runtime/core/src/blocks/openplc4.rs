@@ -1,7 +1,7 @@
 //! OpenPLC Editor from v4.2 and Runtime from v4.1, whose library is that of STruC++, written in Structured Text
 //! (`libs/sources/iec-standard-fb`, read and run at 0.6.1). `CTU` is [`openplc`]'s. A `CTD`, and the
-//! `cd` of a `CTUD`, count on the falling edge; a `CTUD` counts up and then down, each judged on the count
-//! as it then is. Timers are state machines, which look at the time from the call after the edge on.
+//! `cd` of a `CTUD`, count on the falling edge; a `CTUD` counts up and then down, each tested against the
+//! count at that moment. Timers are state machines, which check the time from the call after the edge on.
 
 use super::iec::Count;
 use super::openplc;
@@ -11,7 +11,7 @@ use crate::{Context, Time};
 /// `CTU`: counts up on each rising edge of `cu` while `cv < pv`.
 pub type Ctu<T> = openplc::Ctu<T>;
 
-/// `CTD` as the option `openplc4-cd-edge = "rising"` has it.
+/// `CTD` with the option `openplc4-cd-edge = "rising"`.
 pub type CtdRising<T> = openplc::Ctd<T>;
 
 /// `CTD`: counts down on each falling edge of `cd` while `cv > 0`; a `cd` that is FALSE in the first call
@@ -64,11 +64,11 @@ pins!([T: Count] Ctd<T> {
 
 /// `CTUD`: counts down on the falling edge.
 pub type Ctud<T> = Both<T, false>;
-/// `CTUD` as the option `openplc4-cd-edge = "rising"` has it.
+/// `CTUD` with the option `openplc4-cd-edge = "rising"`.
 pub type CtudRising<T> = Both<T, true>;
 
 /// Counts up on each rising edge of `cu` while `cv < pv`, then down on each edge of `cd`, rising if `RISES`,
-/// while `cv > 0`; so with both at `pv` only down counts. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset
+/// while `cv > 0`; so if both count at `pv`, only down counts. `qu` while `cv >= pv`, `qd` while `cv <= 0`. Reset
 /// wins over load, load over counting.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -119,8 +119,8 @@ pins!([T: Count, const RISES: bool] Both<T, RISES> {
     Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before" }
 });
 
-/// `TON`: the call in which `in_` rises starts it; `q` comes in a later call, once `pt` has passed, also
-/// where `pt` is 0. `et` is `pt` from then on.
+/// `TON`: the call in which `in_` rises starts it; `q` becomes TRUE in a later call, once `pt` has passed, even
+/// if `pt` is 0. `et` is `pt` from then on.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ton {
@@ -142,7 +142,7 @@ impl Ton {
         self.step(cx);
     }
 
-    /// One call with the inputs as they are. It runs while `in_` was TRUE and `q` has not come.
+    /// One call with the inputs as they are. The timer runs while `in_` was TRUE and `q` is still FALSE.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
         let runs = self.in_ & self.in_before & !self.q;
@@ -163,7 +163,7 @@ pins!([] Ton {
 });
 
 /// `TOF`: `q` while `in_`, and from the call in which it falls until a later one, once `pt` has passed,
-/// also where `pt` is 0.
+/// even if `pt` is 0.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tof {
@@ -185,7 +185,7 @@ impl Tof {
         self.step(cx);
     }
 
-    /// One call with the inputs as they are. It runs while `in_` was FALSE and `q` is still there.
+    /// One call with the inputs as they are. The timer runs while `in_` was FALSE and `q` is still TRUE.
     #[inline]
     pub fn step(&mut self, cx: &Context) {
         let runs = !self.in_ & !self.in_before & self.q;
@@ -206,8 +206,8 @@ pins!([] Tof {
     Memory { in_before: BOOL = "in_before", start: TIME = "start" }
 });
 
-/// `TP`: a rising `in_` gives a pulse of `q` that lasts to a later call, once `pt` has passed, also where
-/// `pt` is 0; what `in_` does meanwhile is lost. After it `et` stays until `in_` is FALSE.
+/// `TP`: a rising `in_` gives a pulse of `q` that lasts to a later call, once `pt` has passed, even if
+/// `pt` is 0; changes of `in_` during the pulse are ignored. After it `et` stays until `in_` is FALSE.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tp {
@@ -250,8 +250,8 @@ pins!([] Tp {
     Memory { in_before: BOOL = "in_before", start: TIME = "start" }
 });
 
-/// Whether `delay` has passed since `start`, and how much of it. A negative one is over at once, and is
-/// the part of it that has passed.
+/// Whether `delay` has passed since `start`, and how much of it. A negative delay is over at once, and is
+/// itself the part that has passed.
 #[inline]
 fn measured(start: Time, delay: Time, cx: &Context) -> (bool, Time) {
     let over = start.wrapping_add(delay) <= cx.now();

@@ -1,24 +1,24 @@
 //! The counters of Siemens' S7: SFB 0, 1 and 2 of S7-300 and S7-400 (System Software for S7-300/400, Volume 2/2,
 //! A5E00739858-01, 25.4 to 25.6), and `CTU`, `CTD` and `CTUD` of S7-1200 and S7-1500 (TIA Portal's help of SCL, "Counter
-//! operations"). They count as [`iec`]'s do, in all integers. Whether a load is a level or an edge is said in two ways.
+//! operations"). They count as [`iec`]'s do, in all integers. The documents disagree on whether LD is a level or an edge.
 
 use super::iec::{self, Count};
 use crate::block::pins;
 use crate::{Context, Time};
 
-/// `CTU`: counts up on each rising edge of `cu`, also past `pv`.
+/// `CTU`: counts up on each rising edge of `cu`, even past `pv`.
 pub type Ctu<T> = iec::Ctu<T>;
 /// `CTD`: `ld` is a level.
 pub type Ctd<T> = Down<T, false>;
 /// `CTUD`: `ld` is a level.
 pub type Ctud<T> = Both<T, false>;
-/// `CTD` as the option `s7-ld = "edge"` has it.
+/// `CTD` with the option `s7-ld = "edge"`.
 pub type CtdLdEdge<T> = Down<T, true>;
-/// `CTUD` as the option `s7-ld = "edge"` has it.
+/// `CTUD` with the option `s7-ld = "edge"`.
 pub type CtudLdEdge<T> = Both<T, true>;
 
-/// Counts down on each rising edge of `cd`, also below 0; `q` while `cv <= 0`. While `ld`, nothing counts; `pv` is loaded in
-/// each call with it, or, if `EDGE`, in the first of them.
+/// Counts down on each rising edge of `cd`, even below 0; `q` while `cv <= 0`. While `ld` is TRUE, nothing counts; `pv` is
+/// loaded in each such call, or, if `EDGE`, in the first of them.
 ///
 /// ```
 /// let mut parts = staunch_runtime::s7::CtdLdEdge::<i16>::new();
@@ -66,9 +66,9 @@ pins!([T: Count, const EDGE: bool] Down<T, EDGE> {
     Memory { cd_before: BOOL = "cd_before", ld_before: BOOL = "ld_before" }
 });
 
-/// Counts up on each rising edge of `cu` and down on each of `cd`; both in one call leave `cv` alone. `qu` while `cv >= pv`,
-/// `qd` while `cv <= 0`. Reset wins over load, load over counting; `ld` is as in [`Down`]. While `r`, what `ld` does has no
-/// effect, so that an edge of it there is used up.
+/// Counts up on each rising edge of `cu` and down on each of `cd`; both in one call leave `cv` unchanged. `qu` while `cv >= pv`,
+/// `qd` while `cv <= 0`. Reset wins over load, load over counting; `ld` works as in [`Down`]. While `r` is TRUE, `ld` has no
+/// effect, and an edge of it is used up.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Both<T, const EDGE: bool> {
@@ -121,9 +121,9 @@ pins!([T: Count, const EDGE: bool] Both<T, EDGE> {
     Memory { cu_before: BOOL = "cu_before", cd_before: BOOL = "cd_before", ld_before: BOOL = "ld_before" }
 });
 
-/// `TONR` of S7-1200 and S7-1500: adds up how long `in_` was TRUE, in `et`, until that is the preset: then `q` is TRUE, and both
-/// stay, also when `in_` falls, until `r`, a level that clears them whatever `in_` is. The preset is the `pt` of the call in
-/// which `in_` rose last; a negative one acts as 0. The call in which `in_` falls adds the time up to it. (S7-1200 System
+/// `TONR` of S7-1200 and S7-1500: adds up in `et` how long `in_` was TRUE, until that reaches the preset: then `q` is TRUE, and
+/// both stay, even when `in_` falls, until `r`, a level that clears them whatever `in_` is. The preset is the `pt` of the call
+/// in which `in_` rose last; a negative preset acts as 0. The call in which `in_` falls adds the time up to it. (S7-1200 System
 /// Manual, 11/2011, tables 7-18 and 7-19; TIA Portal's help, "TONR: Time accumulator")
 ///
 /// ```

@@ -9,7 +9,7 @@ use core::mem;
 
 /// `TON`: `q` once `in_` has been TRUE for `pt`, until it falls. `et` is the time it has been
 /// TRUE, up to `pt`. While it runs, each call's `pt` counts; once it has expired, `q` and `et`
-/// stay as they are. With a `pt` of 0, `q` comes in the first call with `in_`.
+/// stay as they are. With a `pt` of 0, `q` is TRUE in the first call with `in_`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Ton {
@@ -103,10 +103,10 @@ pins!([] Tof {
     Memory { in_before: BOOL = "in_before", start: TIME = "start" }
 });
 
-/// `TP`: a rising `in_` gives a pulse of `q` that lasts `pt`, whatever `in_` does meanwhile;
-/// another rise during the pulse, or in the call that ends it, is lost. `et` is the pulse's age;
-/// after it, `et` stays until `in_` is FALSE. During the pulse each call's `pt` counts; a `pt`
-/// of 0 gives none.
+/// `TP`: a rising `in_` gives a pulse of `q` that lasts `pt`, whatever `in_` does in the meantime;
+/// another rising edge during the pulse, or in the call that ends it, is lost. `et` is the time since
+/// the pulse began; after it, `et` stays until `in_` is FALSE. During the pulse each call's `pt`
+/// counts; a `pt` of 0 gives no pulse.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tp {

@@ -1,15 +1,15 @@
-//! A process image: where the value at a direct address is among the bytes of its area. Emitted Rust has the same image as an executable in
-//! shared memory.
+//! A process image: the position of the value at each direct address among the bytes of its area. Emitted Rust uses the same image as an
+//! executable does in shared memory.
 
 use super::Area;
 
-/// Values of each width in an area, as OpenPLC's runtime has them; of bits, eight times as many.
+/// The number of values of each width in an area, as in OpenPLC's runtime; there are eight times as many bits.
 const NUMBERS: usize = 1024;
 
 /// The width of the value at a direct address: X, B, W, D or L.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Width {
-    /// One bit, which has a byte of its own in an image.
+    /// One bit, which takes a whole byte in an image.
     Bit,
     /// 8 bits.
     Byte,
@@ -22,7 +22,7 @@ pub enum Width {
 }
 
 impl Width {
-    /// Bytes of a value in an image.
+    /// The size of a value in an image, in bytes.
     pub const fn size(self) -> usize {
         match self {
             Self::Bit | Self::Byte => 1,
@@ -40,7 +40,7 @@ impl Width {
         }
     }
 
-    /// Where its table begins in an area.
+    /// The offset of its table in an area.
     const fn table(self) -> usize {
         match self {
             Self::Bit => 0,
@@ -52,27 +52,27 @@ impl Width {
     }
 }
 
-/// Where the value at a direct address is in an image.
+/// The place of the value at a direct address in an image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Place {
     /// `%I`, `%Q` or `%M`.
     pub area: Area,
-    /// Of the value.
+    /// The width of the value.
     pub width: Width,
-    /// 3 in `%IW3`. Of a bit, eight times its byte and its place there: 11 in `%QX1.3`.
+    /// 3 in `%IW3`. For a bit, eight times its byte plus its position there: 11 in `%QX1.3`.
     pub number: usize,
 }
 
 impl Place {
-    /// Bytes of an area.
+    /// The size of an area, in bytes.
     pub const AREA_SIZE: usize = 23 * NUMBERS;
 
-    /// The place of a number, which is to be below [`Width::count`].
+    /// The place with this number, which must be below [`Width::count`].
     pub const fn new(area: Area, width: Width, number: usize) -> Self {
         Self { area, width, number }
     }
 
-    /// The place of an address: of `%QX1.3` an output, a bit, and the number 11. `None` for the address of a module, `%IW1.2.3`, and for
+    /// The place of an address: for `%QX1.3` the outputs, a bit, and the number 11. `None` for the address of a module, `%IW1.2.3`, and for
     /// a number that is too high.
     pub fn parse(address: &str) -> Option<Self> {
         let mut letters = address.strip_prefix('%')?.chars();
@@ -98,7 +98,7 @@ impl Place {
         (number < width.count()).then_some(Self { area, width, number })
     }
 
-    /// Whether a value has this width: a BOOL has one bit, and others as many bytes as the place.
+    /// Whether a value of this type fits the place: a BOOL needs a bit, and other values a place with their number of bytes.
     pub const fn holds(self, is_bool: bool, size: usize) -> bool {
         match self.width {
             Width::Bit => is_bool,
@@ -106,12 +106,12 @@ impl Place {
         }
     }
 
-    /// How many values of an array have a place from here on.
+    /// The maximum number of array elements that have places from here on.
     pub const fn room(self) -> usize {
         self.width.count().saturating_sub(self.number)
     }
 
-    /// Its first byte in its area.
+    /// The offset of its first byte in its area.
     pub const fn at(self) -> usize {
         self.width.table().saturating_add(self.number.saturating_mul(self.width.size()))
     }
@@ -121,14 +121,14 @@ fn bit_number(byte: usize, bit: usize) -> Option<usize> {
     if bit < 8 { byte.checked_mul(8)?.checked_add(bit) } else { None }
 }
 
-/// Bytes at the places of an image, the lowest first: a driver's memory, its pins, or what it has received.
+/// Access to the bytes at the places of an image, lowest byte first: a driver's memory, its pins, or the data that it has received.
 ///
-/// `read_image` and `write_image` of a program's globals load and store each place that a variable has.
+/// `read_image` and `write_image` of a program's globals load and store each place that belongs to a variable.
 pub trait ProcessImage {
-    /// Copies the value at a place into `bytes`, which has the size of the place. A bit is 0, or any other byte.
+    /// Copies the value at a place into `bytes`, which has the size of the place. A bit is FALSE if its byte is 0, otherwise TRUE.
     fn load(&self, place: Place, bytes: &mut [u8]);
 
-    /// Copies `bytes`, which has the size of the place, to it. A bit is 0 or 1.
+    /// Copies `bytes`, which has the size of the place, to the place. A bit is 0 or 1.
     fn store(&mut self, place: Place, bytes: &[u8]);
 
     /// The value at a place as bits.
@@ -143,12 +143,12 @@ pub trait ProcessImage {
         }
     }
 
-    /// The value at a place as bits, if it is another one.
+    /// The value at a place as bits, if it differs from `present`.
     fn changed(&self, place: Place, present: u64) -> Option<u64> {
         Some(self.bits(place)).filter(|bits| *bits != present)
     }
 
-    /// Sets the value at a place from bits; those above its width are left out.
+    /// Sets the value at a place from bits; bits above its width are ignored.
     fn set_bits(&mut self, place: Place, bits: u64) {
         if let Some(value) = bits.to_le_bytes().get(..place.width.size()) {
             self.store(place, value);
@@ -156,8 +156,8 @@ pub trait ProcessImage {
     }
 }
 
-/// An image in memory, as each place has its [`at`](Place::at). An area may end early: what is past its end is read as 0 and is not
-/// written.
+/// An image in memory, in which each place is at its [`at`](Place::at). An area may be shorter: places past its end are read as 0 and are
+/// not written.
 #[derive(Debug)]
 pub struct Areas<'a> {
     /// `%I`

@@ -7,16 +7,16 @@ use core::fmt;
 /// A variable, or the elements of an array.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Name {
-    /// As Structured Text writes it, from the name of the program's instance on, `Main.parts.CV`; a global's
-    /// own name. An array's elements share a path with its bounds, `Main.levels[1..8]`.
+    /// The path as in Structured Text, beginning with the name of the program's instance, `Main.parts.CV`; for a global
+    /// only its own name. The elements of an array share a path with its bounds, `Main.levels[1..8]`.
     pub path: &'static str,
     /// The type's name in Structured Text.
     pub ty: &'static str,
-    /// How many values have the path.
+    /// The number of values with this path.
     pub elements: usize,
 }
 
-/// A variable's value: numbers by what they are in Rust, times in nanoseconds, enumerations as numbers.
+/// The value of a variable: numbers in their Rust type, times in nanoseconds, enumerations as numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value<'v> {
     Bool(bool),
@@ -26,7 +26,7 @@ pub enum Value<'v> {
     LongReal(f64),
     /// A STRING's characters.
     Text(&'v [u8]),
-    /// A WSTRING's, as UTF-16.
+    /// A WSTRING's characters, as UTF-16.
     WideText(&'v [u16]),
 }
 

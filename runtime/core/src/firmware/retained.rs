@@ -1,7 +1,7 @@
-//! Retained variables as bytes that a firmware keeps where it likes: in flash, FRAM or battery-backed memory.
+//! Retained variables as bytes that a firmware can keep anywhere: in flash, FRAM or battery-backed memory.
 //!
 //! A record is the program's fingerprint, the stamp, the variables' values in the order of their
-//! declarations, and a CRC-32 of all that; numbers are little endian.
+//! declarations, and a CRC-32 of all of these; numbers are little endian.
 
 use crate::text::Unit;
 use crate::{Text, Time, crc32};
@@ -10,26 +10,26 @@ use core::fmt;
 /// The start of a record; the digit is the version of its form.
 const TITLE: [u8; 4] = *b"STR1";
 
-/// Bytes of a record in addition to its values.
+/// The size of a record in addition to its values, in bytes.
 pub const RECORD_OVERHEAD: usize = 24;
 
-/// What a firmware writes in addition to the values. The later of two is the greater.
+/// What a firmware writes in addition to the values. The later of two stamps is the greater one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Stamp {
-    /// Counts up with each record, so that of two records the later is known.
+    /// Increases with each record, so that the later of two records is known.
     pub sequence: u32,
-    /// The program's clock, in nanoseconds: what `Context::at` was given. Retained timers continue by it.
+    /// The program's clock, in nanoseconds: the time that was passed to `Context::at`. Retained timers continue from it.
     pub now: Time,
 }
 
-/// Why bytes hold no retained variables of the program.
+/// Why the bytes are not a valid record of the program's retained variables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NotRetained {
-    /// No record was written there, or it is of a version that this runtime does not know.
+    /// No record was written there, or one with a version that this runtime does not know.
     Missing,
-    /// Its checksum does not match: its writing was cut off, or a bit has flipped.
+    /// Its checksum does not match: writing it was interrupted, or a bit has flipped.
     Damaged,
-    /// It is of a program with other retained variables.
+    /// It belongs to a program with different retained variables.
     OtherProgram,
 }
 
@@ -45,7 +45,7 @@ impl fmt::Display for NotRetained {
 
 impl core::error::Error for NotRetained {}
 
-/// Carries values to a record, or from one.
+/// Copies values to a record, or from one.
 #[derive(Debug)]
 pub struct Carrier<'a> {
     record: Record<'a>,
@@ -59,13 +59,13 @@ enum Record<'a> {
 }
 
 impl Carrier<'_> {
-    /// Carries a value of any bytes.
+    /// Copies a value for which all bytes are valid.
     #[inline]
     pub fn value(&mut self, value: &mut impl Carried) {
         value.carry(self);
     }
 
-    /// Carries a number of a subrange: one from outside of it becomes the nearer bound.
+    /// Copies a number of a subrange: a number out of range becomes the nearer bound.
     #[inline]
     pub fn within<T: Carried + Copy + PartialOrd>(&mut self, value: &mut T, low: T, high: T) {
         value.carry(self);
@@ -76,7 +76,7 @@ impl Carrier<'_> {
         }
     }
 
-    /// Takes these bytes along, or puts those of the record in their place.
+    /// Copies these bytes to the record, or replaces them with those of the record.
     #[inline]
     fn bytes(&mut self, bytes: &mut [u8]) {
         let end = self.at + bytes.len();
@@ -96,9 +96,9 @@ impl Carrier<'_> {
     }
 }
 
-/// What a record can hold. A value that is loaded is one of its type, whatever the record's bytes are.
+/// A type whose values a record can hold. A loaded value is always valid for its type, whatever bytes the record has.
 pub trait Carried {
-    /// Carries it to the record, or from it.
+    /// Copies the value to the record, or from it.
     fn carry(&mut self, carrier: &mut Carrier<'_>);
 }
 
@@ -119,7 +119,7 @@ macro_rules! numbers {
 
 numbers!(i8 i16 i32 i64 u8 u16 u32 u64 f32 f64);
 
-/// Every byte but 0 is TRUE.
+/// Every byte except 0 is TRUE.
 impl Carried for bool {
     #[inline]
     fn carry(&mut self, carrier: &mut Carrier<'_>) {
@@ -129,7 +129,7 @@ impl Carried for bool {
     }
 }
 
-/// A length beyond the capacity is the capacity.
+/// A length beyond the capacity is reduced to the capacity.
 impl<const N: usize, U: Unit + Carried> Carried for Text<N, U> {
     fn carry(&mut self, carrier: &mut Carrier<'_>) {
         let mut length = self.as_units().len() as u16;
@@ -151,7 +151,7 @@ impl<T: Carried, const N: usize> Carried for [T; N] {
     }
 }
 
-/// Writes a record, which takes all of `bytes`.
+/// Writes a record that fills `bytes`.
 pub fn save(bytes: &mut [u8], program: u32, stamp: Stamp, carry: impl FnOnce(&mut Carrier<'_>)) {
     let Some((record, checksum)) = bytes.split_last_chunk_mut() else { return };
     let mut carrier = Carrier { record: Record::Saved(record), at: 0 };
@@ -164,7 +164,10 @@ pub fn save(bytes: &mut [u8], program: u32, stamp: Stamp, carry: impl FnOnce(&mu
     *checksum = crc32(record).to_le_bytes();
 }
 
-/// Whether `bytes` begin with a record of `size` bytes that belongs to the program, and when it was written.
+/// The stamp of the record at the start of `bytes`, which has `size` bytes and belongs to the program.
+///
+/// # Errors
+/// The reason, if the bytes do not begin with such a record.
 pub fn stamp(bytes: &[u8], size: usize, program: u32) -> Result<Stamp, NotRetained> {
     let record = bytes.get(..size).filter(|it| it.starts_with(&TITLE)).ok_or(NotRetained::Missing)?;
     let (record, checksum) = record.split_last_chunk().ok_or(NotRetained::Missing)?;
@@ -183,7 +186,7 @@ pub fn stamp(bytes: &[u8], size: usize, program: u32) -> Result<Stamp, NotRetain
     Ok(stamp)
 }
 
-/// Reads a record, after all of it has been found right.
+/// Reads a record, after it has been checked completely.
 pub fn load(
     bytes: &[u8],
     size: usize,

@@ -1,4 +1,4 @@
-//! Arithmetic, which wraps at its operands' type.
+//! Arithmetic, which wraps at the type of its operands.
 
 use super::{Integer, Number};
 use crate::FaultKind;
@@ -54,7 +54,7 @@ pub fn modulo<T: Integer>(a: T, b: T) -> Result<T, FaultKind> {
     a.remainder(b)
 }
 
-/// [`div`] of integers on S7, where the quotient of a division by zero is 0.
+/// [`div`] of integers on S7, where dividing by zero gives 0.
 ///
 /// ```
 /// use staunch_runtime::ops::div_or_zero;
@@ -66,7 +66,7 @@ pub fn div_or_zero<T: Number>(a: T, b: T) -> T {
     if b == T::ZERO { T::ZERO } else { a.quotient(b).unwrap_or(T::ZERO) }
 }
 
-/// [`modulo`] of OpenPLC and S7, where the remainder of a division by zero is 0.
+/// [`modulo`] in OpenPLC and on S7, where the remainder for a zero divisor is 0.
 ///
 /// ```
 /// use staunch_runtime::ops::modulo_or_zero;
@@ -79,14 +79,14 @@ pub fn modulo_or_zero<T: Integer>(a: T, b: T) -> T {
 }
 
 /// `-value`. Integers wrap: `-MIN` is `MIN`, and an unsigned value becomes its two's complement.
-/// For reals the sign flips, also that of zero and NaN.
+/// For reals the sign flips, even for zero and NaN.
 #[inline]
 pub fn neg<T: Number>(value: T) -> T {
     value.negated()
 }
 
 /// The magnitude of `value`. Integers wrap: that of `MIN` is `MIN`. For reals the sign is
-/// cleared, also that of zero and NaN.
+/// cleared, even for zero and NaN.
 #[inline]
 pub fn abs<T: Number>(value: T) -> T {
     value.magnitude()

@@ -28,8 +28,8 @@ pub fn not<T: Bits>(value: T) -> T {
     !value
 }
 
-/// Moves the bits of `value` left by `count`; zeros come in. All are gone when `count` reaches
-/// the width; a negative `count` moves nothing.
+/// Shifts the bits of `value` left by `count`, filling with zeros. The result is 0 when `count` reaches
+/// the width; a negative `count` shifts nothing.
 ///
 /// ```
 /// use staunch_runtime::ops::shl;
@@ -42,8 +42,8 @@ pub fn shl<T: Integer>(value: T, count: i64) -> T {
     shift(value, count, T::shifted_left)
 }
 
-/// Moves the bits of `value` right by `count`; zeros come in, also for signed types. All are
-/// gone when `count` reaches the width; a negative `count` moves nothing.
+/// Shifts the bits of `value` right by `count`, filling with zeros, even for signed types. The result is
+/// 0 when `count` reaches the width; a negative `count` shifts nothing.
 ///
 /// ```
 /// use staunch_runtime::ops::shr;
@@ -55,8 +55,8 @@ pub fn shr<T: Integer>(value: T, count: i64) -> T {
     shift(value, count, T::shifted_right)
 }
 
-/// Moves the bits of `value` right by `count`, and keeps the sign: copies of it come in. A negative
-/// `count` moves nothing.
+/// Shifts the bits of `value` right by `count`, filling with copies of the sign bit. A negative
+/// `count` shifts nothing.
 ///
 /// ```
 /// use staunch_runtime::ops::sar;
@@ -74,7 +74,7 @@ fn shift<T: Integer>(value: T, count: i64, by: fn(T, u32) -> T) -> T {
     if count >= i64::from(T::BITS) { T::ZERO } else { by(value, count.max(0) as u32) }
 }
 
-/// Turns the bits of `value` left by `count` modulo the width; a negative `count` turns right.
+/// Rotates the bits of `value` left by `count` modulo the width; a negative `count` rotates right.
 ///
 /// ```
 /// use staunch_runtime::ops::rol;
@@ -87,21 +87,21 @@ pub fn rol<T: Integer>(value: T, count: i64) -> T {
     value.rotated_left(turns::<T>(count))
 }
 
-/// Turns the bits of `value` right by `count` modulo the width; a negative `count` turns left.
+/// Rotates the bits of `value` right by `count` modulo the width; a negative `count` rotates left.
 #[inline]
 pub fn ror<T: Integer>(value: T, count: i64) -> T {
     value.rotated_right(turns::<T>(count))
 }
 
-/// The least non-negative count that turns a `T` as far as `count` does.
+/// The smallest non-negative count that rotates a `T` in the same way as `count` does.
 #[inline]
 fn turns<T: Integer>(count: i64) -> u32 {
     // Every width is a power of two, so the mask is the euclidean remainder.
     count as u32 & (T::BITS - 1)
 }
 
-/// A [`Reference`](crate::Reference) after a step of `distance` bytes: the lower half of the bits moves,
-/// and wraps; the upper half, the object's number, stays.
+/// A [`Reference`](crate::Reference) after a step of `distance` bytes: `distance` is added to the lower half of the
+/// bits, which wraps; the upper half, the object's number, stays.
 ///
 /// ```
 /// use staunch_runtime::ops::advance;
@@ -141,7 +141,7 @@ pub fn swap_bytes<T: Scalar>(value: T) -> T {
     T::from_value(swapped).unwrap_or(value)
 }
 
-/// The number of 16 decimal digits, each in four bits; four bits that are not a digit count with their value.
+/// The number with 16 decimal digits, of four bits each; four bits that are not a digit count with their value.
 ///
 /// ```
 /// use staunch_runtime::ops::from_bcd;
@@ -152,7 +152,7 @@ pub fn from_bcd(digits: i64) -> i64 {
     (0..16).rev().fold(0, |number, at| number * 10 + ((digits >> (4 * at)) & 0xF))
 }
 
-/// The last 16 decimal digits of an unsigned number, each in four bits.
+/// The last 16 decimal digits of an unsigned number, of four bits each.
 ///
 /// ```
 /// use staunch_runtime::ops::to_bcd;
@@ -169,7 +169,7 @@ pub fn to_bcd(number: i64) -> i64 {
     digits as i64
 }
 
-/// The number of `count` decimal digits, each in four bits, that is below 0 where the highest of the four bits above
+/// The number with `count` decimal digits, of four bits each. It is negative if the highest of the four bits above
 /// them is set: BCD16 of S7 has 3 digits, BCD32 has 7.
 ///
 /// # Errors
@@ -193,7 +193,7 @@ pub fn from_signed_bcd(digits: i64, count: i64) -> Result<i64, FaultKind> {
     Ok(if digit(count) < 8 { number } else { -number })
 }
 
-/// The `count` decimal digits of a number, each in four bits, below four bits that are set where it is below 0.
+/// The `count` decimal digits of a number, of four bits each, below four bits that are set if it is negative.
 ///
 /// # Errors
 /// [`FaultKind::NotDecimal`] if it has more digits.
@@ -213,13 +213,13 @@ pub fn to_signed_bcd(number: i64, count: i64) -> Result<i64, FaultKind> {
     Ok(to_bcd(magnitude as i64) | sign)
 }
 
-/// As many digits as 64 bits hold in addition to a sign, at most.
+/// The maximum number of digits that fit 64 bits together with a sign.
 #[inline]
 fn most_digits(count: i64) -> u32 {
     count.clamp(0, 15) as u32
 }
 
-/// The number of the lowest bit that is set; 0 where none is.
+/// The number of the lowest set bit; 0 if none is set.
 ///
 /// ```
 /// use staunch_runtime::ops::first_bit;

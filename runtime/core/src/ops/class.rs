@@ -4,8 +4,8 @@ use core::ops::{BitAnd, BitOr, BitXor, Not};
 
 use crate::{FaultKind, Scalar};
 
-/// A repr with arithmetic: every repr but BOOL. The operations mean what the functions of
-/// [`ops`](crate::ops) say.
+/// A repr with arithmetic: every repr except BOOL. The functions of [`ops`](crate::ops) define what
+/// the operations mean.
 pub trait Number: Scalar {
     fn plus(self, other: Self) -> Self;
     fn minus(self, other: Self) -> Self;
@@ -15,20 +15,20 @@ pub trait Number: Scalar {
     fn magnitude(self) -> Self;
 }
 
-/// A repr of whole numbers, signed or not; also what carries BYTE to LWORD, and TIME.
+/// A repr of whole numbers, signed or not, including the reprs of BYTE to LWORD, and of TIME.
 pub trait Integer: Number + Ord {
     const BITS: u32;
 
     fn remainder(self, divisor: Self) -> Result<Self, FaultKind>;
-    /// Zeros come in; `count` is below [`BITS`](Self::BITS).
+    /// Fills with zeros; `count` is below [`BITS`](Self::BITS).
     fn shifted_left(self, count: u32) -> Self;
-    /// Zeros come in, also for a signed repr; `count` is below [`BITS`](Self::BITS).
+    /// Fills with zeros, even for a signed repr; `count` is below [`BITS`](Self::BITS).
     fn shifted_right(self, count: u32) -> Self;
     fn rotated_left(self, count: u32) -> Self;
     fn rotated_right(self, count: u32) -> Self;
     /// Its two's complement, extended to 64 bits.
     fn extended(self) -> u64;
-    /// What has these as its lowest bits.
+    /// The value with these as its lowest bits.
     fn of_low_bits(bits: u64) -> Self;
 }
 

@@ -3,13 +3,13 @@
 use crate::ops::Real;
 use crate::{Repr, Scalar, Value, with_repr};
 
-/// A repr that converts to repr `T`; every pair does.
+/// A repr that can be converted to repr `T`; every repr can.
 pub trait ConvertTo<T> {
     /// See [`convert`].
     fn converted(self) -> T;
 }
 
-/// A real repr that truncates to integer repr `T`; every such pair does.
+/// A real repr that can be truncated to integer repr `T`; every real repr can.
 pub trait TruncateTo<T> {
     /// See [`trunc`].
     fn truncated(self) -> T;
@@ -40,7 +40,7 @@ pub fn convert<F: ConvertTo<T>, T>(value: F) -> T {
     value.converted()
 }
 
-/// Changes a real to an integer toward zero; saturated; NaN gives 0.
+/// Truncates a real to an integer, toward zero; saturated; NaN gives 0.
 ///
 /// ```
 /// use staunch_runtime::ops::trunc;
@@ -97,7 +97,7 @@ macro_rules! truncations {
 truncations!(f32: i8 i16 i32 i64 u8 u16 u32 u64);
 truncations!(f64: i8 i16 i32 i64 u8 u16 u32 u64);
 
-/// The bits of a real as an unsigned number of its width, and back; any other value is itself.
+/// The bits of a real as an unsigned number of its width, and the reverse; any other value is unchanged.
 pub fn same_bits(value: Value, to: Repr) -> Value {
     match (value, to) {
         (Value::F32(it), Repr::U32) => Value::U32(it.to_bits()),
@@ -143,7 +143,7 @@ pub fn trunc_value(value: Value, to: Repr) -> Value {
     }
 }
 
-/// A repr that converts to every repr.
+/// A repr that can be converted to every repr.
 trait ConvertToAny:
     Scalar
     + ConvertTo<bool>

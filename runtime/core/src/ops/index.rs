@@ -1,9 +1,9 @@
-//! Indices of arrays, and the check of one.
+//! Array indices, and their check.
 
 use super::Integer;
 use crate::FaultKind;
 
-/// The 0-based position of element `value` in an array whose subscripts are `low..=high`, else
+/// The 0-based position of element `value` in an array whose subscripts are `low..=high`, otherwise
 /// [`FaultKind::IndexOutOfRange`].
 ///
 /// ```
@@ -21,7 +21,7 @@ pub fn index(value: i64, low: i64, high: i64) -> Result<usize, FaultKind> {
     }
 }
 
-/// `value` if it is in `low..=high`, else [`FaultKind::IndexOutOfRange`]: an index that is checked
+/// `value` if it is in `low..=high`, otherwise [`FaultKind::IndexOutOfRange`]: an index that is checked
 /// before its element is read or written.
 #[inline]
 pub fn checked_index<T: Integer>(low: T, value: T, high: T) -> Result<T, FaultKind> {

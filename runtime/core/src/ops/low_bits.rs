@@ -1,9 +1,9 @@
-//! Reals to integers where a system keeps the low bits of a number that the type does not hold.
+//! Reals to integers on systems that keep the low bits of a number that does not fit the type.
 
 use super::convert::ConvertTo;
 use super::{Real, convert};
 
-/// The low 64 bits of the nearest whole number, of two the even one; 0 for NaN and the infinities.
+/// The low 64 bits of the nearest whole number, ties to even; 0 for NaN and the infinities.
 ///
 /// ```
 /// use staunch_runtime::ops::low_bits_of_nearest;
@@ -16,7 +16,7 @@ pub fn low_bits_of_nearest<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     low_bits(convert(value.rounded_to_even()))
 }
 
-/// The same with a half rounded away from zero.
+/// The same with ties rounded away from zero.
 ///
 /// ```
 /// use staunch_runtime::ops::low_bits_of_half_away;
@@ -58,7 +58,7 @@ fn low_bits(whole: f64) -> i64 {
     if holds { whole as i64 } else { low_bits_beyond(whole) }
 }
 
-/// Those of a number of 2^63 and more: its 53 significant bits are far up.
+/// The low bits of a number of 2^63 or more, whose 53 significant bits may all be above them.
 fn low_bits_beyond(whole: f64) -> i64 {
     const FRACTION: u32 = 52;
     if !whole.is_finite() {

@@ -2,50 +2,50 @@
 
 use super::Real;
 
-/// `base` to the power of `exponent`: IEEE `pow`. NaN for a negative base with a broken exponent;
+/// `base` to the power of `exponent`: IEEE `pow`. NaN for a negative base with a fractional exponent;
 /// 1 for an exponent of 0, whatever the base.
 #[inline]
 pub fn expt<T: Real>(base: T, exponent: T) -> T {
     base.power(exponent)
 }
 
-/// The square root, correctly rounded; NaN below zero.
+/// The square root, correctly rounded; NaN for a negative value.
 #[inline]
 pub fn sqrt<T: Real>(value: T) -> T {
     value.square_root()
 }
 
-/// The natural logarithm; negative infinity at zero, NaN below.
+/// The natural logarithm; negative infinity for zero, NaN for a negative value.
 #[inline]
 pub fn ln<T: Real>(value: T) -> T {
     value.natural_log()
 }
 
-/// The logarithm to base 10; negative infinity at zero, NaN below.
+/// The logarithm to base 10; negative infinity for zero, NaN for a negative value.
 #[inline]
 pub fn log<T: Real>(value: T) -> T {
     value.decimal_log()
 }
 
-/// The natural exponential; infinity when it exceeds the type.
+/// The natural exponential; infinity if the result exceeds the type.
 #[inline]
 pub fn exp<T: Real>(value: T) -> T {
     value.exponential()
 }
 
-/// The sine of an angle in radians; NaN at the infinities.
+/// The sine of an angle in radians; NaN for infinities.
 #[inline]
 pub fn sin<T: Real>(value: T) -> T {
     value.sine()
 }
 
-/// The cosine of an angle in radians; NaN at the infinities.
+/// The cosine of an angle in radians; NaN for infinities.
 #[inline]
 pub fn cos<T: Real>(value: T) -> T {
     value.cosine()
 }
 
-/// The tangent of an angle in radians; NaN at the infinities.
+/// The tangent of an angle in radians; NaN for infinities.
 #[inline]
 pub fn tan<T: Real>(value: T) -> T {
     value.tangent()
@@ -76,25 +76,25 @@ pub fn atan2<T: Real>(y: T, x: T) -> T {
     y.arc_tangent_over(x)
 }
 
-/// The least whole number that is not below the value; infinities and NaN stay.
+/// The least whole number that is not below the value; infinities and NaN are unchanged.
 #[inline]
 pub fn ceil<T: Real>(value: T) -> T {
     value.rounded_up()
 }
 
-/// The greatest whole number that is not above the value; infinities and NaN stay.
+/// The greatest whole number that is not above the value; infinities and NaN are unchanged.
 #[inline]
 pub fn floor<T: Real>(value: T) -> T {
     value.rounded_down()
 }
 
-/// The value without its fraction; infinities and NaN stay.
+/// The value without its fraction; infinities and NaN are unchanged.
 #[inline]
 pub fn whole<T: Real>(value: T) -> T {
     value.rounded_to_zero()
 }
 
-/// The nearest whole number, of two the even one; infinities and NaN stay.
+/// The nearest whole number, ties to even; infinities and NaN are unchanged.
 #[inline]
 pub fn nearest<T: Real>(value: T) -> T {
     value.rounded_to_even()

@@ -1,13 +1,13 @@
-//! Conversions of OpenPLC: a real passes through a LINT, and a TIME through seconds. They follow C compiled by MATIEC
-//! (thiagoralves/matiec, f9ca9ba), on x86-64 where C leaves a value undefined.
+//! OpenPLC's conversions: a real is converted through a LINT, and a TIME through seconds. They follow the C code that MATIEC
+//! (thiagoralves/matiec, f9ca9ba) generates, as compiled for x86-64 if C leaves a value undefined.
 
 use super::convert::ConvertTo;
 use super::{Number, Real, convert, from_bcd};
 use crate::time::SECOND;
 use crate::{Scalar, Time};
 
-/// The nearest whole number, of two the even one. Beyond 2^52, where a half is lost, odd numbers become even. What a LINT
-/// does not hold, and NaN, give the least LINT.
+/// The nearest whole number, ties to even. Beyond 2^52, where a half is lost, odd numbers become even. A number that does not
+/// fit a LINT, and NaN, give the least LINT.
 ///
 /// ```
 /// use staunch_runtime::ops::round_to_lint;
@@ -23,15 +23,15 @@ pub fn round_to_lint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     if moved == moved.rounded_to_zero() && moved.is_finite() { whole / 2 * 2 } else { whole }
 }
 
-/// [`round_to_lint`] for a type without a sign: 0 for negative values and NaN.
+/// [`round_to_lint`] for an unsigned type: 0 for negative values and NaN.
 #[inline]
 pub fn round_to_ulint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     let number: f64 = convert(value);
     if number >= 0.0 { round_to_lint(value) } else { 0 }
 }
 
-/// `TRUNC` to a type of at most 32 bits but UDINT: the value as 32 bits with a sign, of which the type keeps the low
-/// ones. What these do not hold, and NaN, give the least DINT.
+/// `TRUNC` to a type of at most 32 bits, except UDINT: the value as 32 bits with a sign, of which the type keeps the low
+/// ones. A value that does not fit them, and NaN, give the least DINT.
 ///
 /// ```
 /// use staunch_runtime::ops::trunc_to_dint;
@@ -66,7 +66,7 @@ pub fn trunc_to_ulint<T: Real + ConvertTo<f64>>(value: T) -> i64 {
     if value >= HALF { low_or_least(value - HALF) ^ i64::MIN } else { low_or_least(value) }
 }
 
-/// The nearest whole number, of two the one farther from 0: C's `round`.
+/// The nearest whole number, ties away from zero: C's `round`.
 ///
 /// ```
 /// use staunch_runtime::ops::away_from_zero;
@@ -86,7 +86,7 @@ pub fn away_from_zero<T: Real + ConvertTo<f64>>(value: T) -> f64 {
     }
 }
 
-/// `ABS`: negates a value less than 0. So -0.0 stays -0.0.
+/// `ABS`: negates a value below 0, so that -0.0 stays -0.0.
 ///
 /// ```
 /// use staunch_runtime::ops::abs_if_below;
@@ -98,7 +98,7 @@ pub fn abs_if_below<T: Number>(value: T) -> T {
     if value < T::ZERO { value.negated() } else { value }
 }
 
-/// `BCD_TO_…`: 0 where a digit is more than 9.
+/// `BCD_TO_…`: 0 if a digit is more than 9.
 ///
 /// ```
 /// use staunch_runtime::ops::from_bcd_or_zero;
@@ -110,7 +110,7 @@ pub fn from_bcd_or_zero(digits: i64) -> i64 {
     if is_decimal { from_bcd(digits) } else { 0 }
 }
 
-/// `TO_BCD`: the digits after the sixteenth are joined with the first ones, where x86-64 shifts them to.
+/// `TO_BCD`: the digits after the sixteenth are combined with the first ones, to which x86-64 shifts them.
 ///
 /// ```
 /// use staunch_runtime::ops::bcd_of;
@@ -129,7 +129,7 @@ pub fn bcd_of(number: i64) -> i64 {
     digits as i64
 }
 
-/// TIME `+` TIME: of the seconds, 32 bits are kept.
+/// TIME `+` TIME: only 32 bits of the seconds are kept.
 ///
 /// ```
 /// use staunch_runtime::ops::time_plus;
@@ -142,14 +142,14 @@ pub fn time_plus(a: Time, b: Time) -> Time {
     normalized(seconds, a % SECOND + b % SECOND)
 }
 
-/// TIME `-` TIME, as [`time_plus`].
+/// TIME `-` TIME, like [`time_plus`].
 #[inline]
 pub fn time_minus(a: Time, b: Time) -> Time {
     let seconds = ((a / SECOND) as i32).wrapping_sub((b / SECOND) as i32);
     normalized(seconds, a % SECOND - b % SECOND)
 }
 
-/// A second is carried where seconds and nanoseconds have different signs, or there are nanoseconds for more than one.
+/// A second is carried if seconds and nanoseconds have different signs, or if the nanoseconds exceed one second.
 #[inline]
 fn normalized(mut seconds: i32, mut nanoseconds: i64) -> Time {
     if nanoseconds < -SECOND || seconds > 0 && nanoseconds < 0 {
@@ -163,7 +163,7 @@ fn normalized(mut seconds: i32, mut nanoseconds: i64) -> Time {
     i64::from(seconds) * SECOND + nanoseconds
 }
 
-/// A TIME of so many seconds: the fraction is cut at nanoseconds. The least DINT is what 32 bits do not hold.
+/// A TIME with this number of seconds: the fraction is cut to nanoseconds. Seconds that do not fit 32 bits become the least DINT.
 ///
 /// ```
 /// use staunch_runtime::ops::time_of_seconds;
@@ -189,8 +189,8 @@ pub fn seconds_of(time: Time) -> f64 {
     (time / SECOND) as f64 + (time % SECOND) as f64 / 1e9
 }
 
-/// TIME times a number: seconds and nanoseconds are multiplied by themselves, each cut to 32 bits. So
-/// `T#500ms * 5` is -2.147 s: its nanoseconds are more than 32 bits hold.
+/// TIME times a number: seconds and nanoseconds are multiplied separately, each cut to 32 bits. So
+/// `T#500ms * 5` is -2.147 s: its nanoseconds do not fit 32 bits.
 ///
 /// ```
 /// use staunch_runtime::ops::time_times;
@@ -206,7 +206,7 @@ pub fn time_times(time: Time, by: f64) -> Time {
     of_timespec(whole.wrapping_add(rest / SECOND), fraction)
 }
 
-/// TIME divided by a number, each component by itself, of which 32 bits are kept.
+/// TIME divided by a number, each component separately, of which 32 bits are kept.
 ///
 /// ```
 /// use staunch_runtime::ops::time_over;

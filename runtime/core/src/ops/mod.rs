@@ -1,6 +1,6 @@
 //! Every operation on elementary values, once. `op_table.rs` lists them; the compiler's
-//! interpreter, generated Rust and native code all end up in these functions, so what a doc
-//! comment says here is what a program does everywhere.
+//! interpreter, generated Rust and native code all end up in these functions, so a program does
+//! what a doc comment says here everywhere.
 
 mod class;
 

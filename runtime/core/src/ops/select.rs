@@ -3,7 +3,7 @@
 use super::Integer;
 use crate::{FaultKind, Scalar};
 
-/// The greater of two values; `a` when neither is greater. So `MAX(-0.0, 0.0)` is `-0.0`, and
+/// The greater of two values; `a` if neither is greater. So `MAX(-0.0, 0.0)` is `-0.0`, and
 /// when one of them is NaN the result is `a`.
 #[inline]
 pub fn max<T: Scalar>(a: T, b: T) -> T {
@@ -18,7 +18,7 @@ pub fn min<T: Scalar>(a: T, b: T) -> T {
 }
 
 /// `MIN(MAX(value, min), max)` (IEC 61131-3, table 32): with crossed bounds the result is `max`. A NaN value stays,
-/// a NaN bound does not bind.
+/// a NaN bound has no effect.
 ///
 /// ```
 /// use staunch_runtime::ops::limit;
@@ -32,7 +32,7 @@ pub fn limit<T: Scalar>(min: T, value: T, max: T) -> T {
     if raised > max { max } else { raised }
 }
 
-/// LIMIT of OpenPLC from v4.1 on: `min` where the value is below it, also where that is above `max`.
+/// LIMIT in OpenPLC from v4.1 on: `min` if the value is below it, even if `min` is above `max`.
 ///
 /// ```
 /// use staunch_runtime::ops::limit_first;
@@ -49,7 +49,7 @@ pub fn limit_first<T: Scalar>(min: T, value: T, max: T) -> T {
     }
 }
 
-/// LIMIT of S7: with crossed bounds the value, and NaN where one of the three is.
+/// LIMIT on S7: the value if the bounds are crossed, and NaN if one of the three is NaN.
 ///
 /// ```
 /// use staunch_runtime::ops::limit_in_order;
@@ -74,7 +74,7 @@ pub fn sel<T: Scalar>(g: bool, in0: T, in1: T) -> T {
     if g { in1 } else { in0 }
 }
 
-/// `value` if it is in `min..=max`, else [`FaultKind::SubrangeViolated`].
+/// `value` if it is in `min..=max`, otherwise [`FaultKind::SubrangeViolated`].
 #[inline]
 pub fn in_range<T: Integer>(min: T, value: T, max: T) -> Result<T, FaultKind> {
     if value < min || value > max { Err(FaultKind::SubrangeViolated) } else { Ok(value) }

@@ -1,10 +1,10 @@
-//! The step of a FOR loop, which ends where it would leave the counter's type.
+//! The step of a FOR loop, which ends if the step would leave the counter's type.
 
 use crate::{FaultKind, Scalar, Value};
 
-/// The counter of a FOR loop after one more `step`, where its type has the values `low..=high`.
-/// `None`, which ends the loop, when the step leads out of them and past `last`; out of them but
-/// not past `last`, [`FaultKind::SubrangeViolated`].
+/// The counter of a FOR loop after one more `step`, if its type has the values `low..=high`.
+/// `None`, which ends the loop, if the result is out of this range and past `last`;
+/// [`FaultKind::SubrangeViolated`] if it is out of this range but not past `last`.
 ///
 /// ```
 /// use staunch_runtime::{FaultKind, ops::step};

@@ -1,7 +1,7 @@
-//! Text of values, and values of text.
+//! Conversions between values and text.
 //!
-//! Text is read as CODESYS and TwinCAT document it: spaces before a value are passed over, and so is what
-//! follows a number; text that is not a value gives 0.
+//! Text is read as CODESYS and TwinCAT document it: spaces before a value are ignored, and so is everything
+//! after a number; text that is not a value gives 0.
 
 use super::{Destination, characters};
 use crate::decimal::{self, Format, LREAL, REAL};
@@ -30,7 +30,7 @@ pub fn widen(text: &[u8], out: &mut Destination<'_, u16>) {
     }
 }
 
-/// A WSTRING's characters as UTF-8; half a surrogate pair is a `?`.
+/// A WSTRING's characters as UTF-8; an unpaired surrogate becomes `?`.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::narrow, utf16};
@@ -69,7 +69,7 @@ pub fn to_wchar(text: &[u16]) -> u16 {
     text.first().copied().unwrap_or_default()
 }
 
-/// The CHAR of that number; `?` where that takes more than a byte.
+/// The CHAR with this number; `?` if the number does not fit a byte.
 #[inline]
 pub fn narrow_char(value: u16) -> u8 {
     u8::try_from(value).unwrap_or(b'?')
@@ -108,7 +108,7 @@ pub fn from_lreal(value: f64, out: &mut Destination<'_>) {
     real(value, LREAL, out);
 }
 
-/// The REAL that the text spells without an exponent; commas are passed over, as S7 does it.
+/// The REAL that the text spells without an exponent; commas are ignored, as on S7.
 ///
 /// ```
 /// use staunch_runtime::text::to_fixed_real;
@@ -120,14 +120,14 @@ pub fn to_fixed_real(text: &[u8]) -> f32 {
     fixed_number(text, REAL) as f32
 }
 
-/// As [`to_fixed_real`], the LREAL.
+/// Like [`to_fixed_real`], for an LREAL.
 #[inline]
 pub fn to_fixed_lreal(text: &[u8]) -> f64 {
     fixed_number(text, LREAL)
 }
 
-/// A value of the type that is `kind`-th among [`Elementary::ALL`], as its literal; none of a TIME is
-/// `T#0ms`, as CODESYS has it.
+/// A value of the type with index `kind` in [`Elementary::ALL`], as its literal; a TIME of 0 is
+/// `T#0ms`, as in CODESYS.
 #[inline]
 pub fn from_time(value: Time, kind: i64, out: &mut Destination<'_>) {
     let ty = time_type(kind);
@@ -138,7 +138,7 @@ pub fn from_time(value: Time, kind: i64, out: &mut Destination<'_>) {
     _ = format::time(out, ty, value);
 }
 
-/// TRUE for `TRUE`, in any case, and for a number whose whole part is not 0.
+/// TRUE for `TRUE`, in upper or lower case, and for a number whose whole part is not 0.
 ///
 /// ```
 /// use staunch_runtime::text::to_bool;
@@ -151,8 +151,8 @@ pub fn to_bool(text: &[u8]) -> bool {
     starts_with(text, b"TRUE") || to_ulint(text) != 0
 }
 
-/// A whole number, in decimal or after its base, with a sign; 0 where there is none. It wraps as an
-/// assignment to fewer bits would, so that every integer type can take its bits of it.
+/// A whole number, in decimal or after its base, with a sign; 0 if the text has no number. It wraps like an
+/// assignment to fewer bits, so that every integer type can take its low bits.
 ///
 /// ```
 /// use staunch_runtime::text::to_lint;
@@ -165,7 +165,7 @@ pub fn to_lint(text: &[u8]) -> i64 {
     to_ulint(text) as i64
 }
 
-/// As [`to_lint`].
+/// Like [`to_lint`].
 #[inline]
 pub fn to_ulint(text: &[u8]) -> u64 {
     let (is_negative, digits) = sign(without_spaces(text));
@@ -181,7 +181,7 @@ pub fn to_ulint(text: &[u8]) -> u64 {
     if is_negative { value.wrapping_neg() } else { value }
 }
 
-/// [`to_lint`] on S7, of decimal digits: 0 for a number that a LINT does not hold.
+/// [`to_lint`] on S7, for decimal digits: 0 for a number that does not fit a LINT.
 ///
 /// ```
 /// use staunch_runtime::text::to_lint_or_0;
@@ -195,7 +195,7 @@ pub fn to_lint_or_0(text: &[u8]) -> i64 {
     i64::try_from(if is_negative { -magnitude } else { magnitude }).unwrap_or(0)
 }
 
-/// The same for a ULINT: 0 also for a negative number.
+/// The same for a ULINT: a negative number gives 0, too.
 ///
 /// ```
 /// use staunch_runtime::text::to_ulint_or_0;
@@ -227,8 +227,8 @@ pub fn to_lreal(text: &[u8]) -> f64 {
     number(text, LREAL)
 }
 
-/// A value of the type that is `kind`-th among [`Elementary::ALL`], of a literal with the prefix of that type
-/// or its long or short form; else 0.
+/// A value of the type with index `kind` in [`Elementary::ALL`], from a literal with the prefix of that type
+/// or of its long or short form; otherwise 0.
 #[inline]
 pub fn to_time(text: &[u8], kind: i64) -> Time {
     let ty = time_type(kind);
@@ -328,13 +328,13 @@ struct Significant {
     number: u128,
     count: u32,
     exponent: i32,
-    /// Whether digits that are not kept are more than nothing.
+    /// Whether any digit that is not kept is other than 0.
     is_more: bool,
 }
 
 impl Significant {
-    /// As many as 128 bits hold, with one digit more for what is not kept. What lies half the way between two reals, and is
-    /// written with still more digits, may go to either.
+    /// As many digits as fit 128 bits together with one more digit for those that are not kept. A number halfway between two
+    /// reals that is written with still more digits may be rounded to either.
     const MOST: u32 = 37;
 
     /// The nearest real. Digits that are not kept decide only by their existence: they make the number slightly greater than the kept ones.
@@ -345,7 +345,7 @@ impl Significant {
         }
     }
 
-    /// Takes digits from the start of `text`, without the character that is `passed` over; the rest of it.
+    /// Takes digits from the start of `text`, and ignores the character `passed`. Returns the rest of the text.
     fn take<'t>(&mut self, text: &'t [u8], is_fraction: bool, passed: u8) -> &'t [u8] {
         let mut rest = text;
         while let Some((byte, after)) = rest.split_first() {
@@ -370,7 +370,7 @@ impl Significant {
     }
 }
 
-/// A number of digits, as far as they go; 0 where 64 bits do not hold it.
+/// The number that the leading digits spell; 0 if it does not fit 64 bits.
 fn whole_or_0(digits: &[u8]) -> u64 {
     let digits = digits.iter().take_while(|it| it.is_ascii_digit());
     let next = |value: u64, digit: &u8| value.checked_mul(10)?.checked_add(u64::from(*digit - b'0'));

@@ -1,4 +1,4 @@
-//! Text in OpenPLC, as C compiled by MATIEC (thiagoralves/matiec, f9ca9ba) has it.
+//! Text in OpenPLC, as in the C code that MATIEC (thiagoralves/matiec, f9ca9ba) generates.
 
 use super::{Destination, Unit, delete, insert, mid, replace, to_lreal};
 use crate::decimal;
@@ -6,8 +6,8 @@ use crate::time::{DAY, SECOND};
 use crate::{Elementary, Time};
 use core::fmt::Write;
 
-/// The order of two strings as far as both go: a text equals every text that begins with it, and the empty one equals
-/// all.
+/// The order of two strings up to the end of the shorter one: a text equals every text that begins with it, and the empty
+/// text equals all texts.
 ///
 /// ```
 /// use staunch_runtime::text::compare_start;
@@ -20,8 +20,8 @@ pub fn compare_start<U: Unit>(a: &[U], b: &[U]) -> i16 {
     a.get(..shared).unwrap_or(a).cmp(b.get(..shared).unwrap_or(b)) as i16
 }
 
-/// `FIND`: what follows a partial match is not looked at again. A pattern that is not there gives 0 if all but its last
-/// character end the text, else the position after the text.
+/// `FIND`: the characters of a partial match are not searched again. If the pattern is not found, the result is 0 if the text
+/// ends with the pattern without its last character, otherwise the position after the text.
 ///
 /// ```
 /// use staunch_runtime::text::find_or_end;
@@ -93,7 +93,7 @@ pub fn delete_from<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Des
     }
 }
 
-/// `REPLACE`: of `by` no more than `count` units are taken. Nothing for a negative count or position.
+/// `REPLACE`: at most `count` units of `by` are used. Nothing for a negative count or position.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::replace_up_to};
@@ -117,7 +117,7 @@ pub fn from_bits(value: u64, out: &mut Destination<'_>) {
     let _ = write!(out, "16#{value:x}");
 }
 
-/// A real with ten significant digits, without zeros at its end: C's `%.10g`.
+/// A real with ten significant digits, without trailing zeros: C's `%.10g`.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::from_general};
@@ -133,7 +133,7 @@ pub fn from_general(value: f64, out: &mut Destination<'_>) {
 
 const ZERO: decimal::Digits = decimal::Digits { digits: [0; 17], count: 1, exponent: 1 };
 
-/// C's `%.*g` with so many significant digits, at most 17.
+/// C's `%.*g` with this number of significant digits, at most 17.
 pub(super) fn general(value: f64, digits: usize, out: &mut Destination<'_>) {
     if value.is_sign_negative() {
         out.write(b"-");
@@ -159,7 +159,7 @@ pub(super) fn general(value: f64, digits: usize, out: &mut Destination<'_>) {
     }
 }
 
-/// Digits with a point after the first `whole` of them, which are filled with zeros.
+/// Digits with a point after the first `whole` of them; missing ones are filled with zeros.
 fn with_point(figures: &[u8], whole: usize, out: &mut Destination<'_>) {
     let (before, after) = figures.split_at_checked(whole).unwrap_or((figures, &[]));
     out.write(before);
@@ -170,7 +170,7 @@ fn with_point(figures: &[u8], whole: usize, out: &mut Destination<'_>) {
     }
 }
 
-/// A TIME, date or point in time. `kind` is its type's place among all.
+/// A TIME, date or point in time. `kind` is the index of its type in [`Elementary::ALL`].
 ///
 /// ```
 /// use staunch_runtime::{Elementary, Text, text::from_seconds};
@@ -190,7 +190,7 @@ pub fn from_seconds(time: Time, kind: i64, out: &mut Destination<'_>) {
     };
 }
 
-/// Days, and each smaller unit until none is left; milliseconds with six digits.
+/// Days, and each smaller unit as long as anything is left; milliseconds with six digits.
 fn write_duration(time: Time, out: &mut Destination<'_>) -> core::fmt::Result {
     let (seconds, rest) = (time / SECOND, time % SECOND);
     let units = [(86_400, 'd'), (3_600, 'h'), (60, 'm'), (1, 's')];
@@ -227,7 +227,7 @@ fn write_seconds(seconds: f64, out: &mut Destination<'_>) -> core::fmt::Result {
     }
 }
 
-/// To the nearest one, ties to the even one.
+/// Rounded to the nearest, ties to even.
 fn millionths(number: f64) -> u64 {
     if number < 1e-6 {
         return u64::from(number > 0.5e-6);
@@ -239,7 +239,7 @@ fn millionths(number: f64) -> u64 {
     if found.exponent + 6 > places { digits * 10 } else { digits }
 }
 
-/// The first of a month, but January, is written as the day after the last of the one before: `1970-01-32`.
+/// The first day of a month, except January, is written as one day past the end of the month before: `1970-01-32`.
 fn write_date(seconds: i64, out: &mut Destination<'_>) -> core::fmt::Result {
     let mut days = seconds.div_euclid(86_400);
     let is_leap = |year: i64| year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
@@ -266,14 +266,14 @@ fn write_date(seconds: i64, out: &mut Destination<'_>) -> core::fmt::Result {
     write!(out, "{year}-{month:02}-{:02}", days + 1)
 }
 
-/// `1`, or TRUE in any case.
+/// `1`, or `TRUE` in upper or lower case.
 #[inline]
 pub fn to_bool_word(text: &[u8]) -> bool {
     text == b"1" || text.eq_ignore_ascii_case(b"TRUE")
 }
 
-/// The number that is read from the end to the start. Other characters than digits are passed over; a character from `.` on in
-/// ASCII, so a letter too, drops what has been read. At most 20 digits count. A `-` is one at the start alone.
+/// The number, read from the end to the start. Characters other than digits are ignored, but those from `.` on in ASCII,
+/// including letters, discard the digits read so far. At most 20 digits count. A `-` counts only at the start.
 ///
 /// ```
 /// use staunch_runtime::text::to_lint_back;
@@ -303,7 +303,7 @@ fn decimal(text: &[u8]) -> i64 {
     number
 }
 
-/// Digits of so many bits each. Those of base 2 and 8 are moved in 32 bits.
+/// Digits of this number of bits each. Those of base 2 and 8 are shifted in 32 bits.
 fn of_digits(text: &[u8], bits: u32, base: u32) -> i64 {
     let mut number = 0_i64;
     let mut shift = 0;
@@ -330,7 +330,7 @@ fn digit_of(byte: u8) -> Option<u32> {
     }
 }
 
-/// A number with a point after its first character; without one, [`to_lint_back`].
+/// A number with a point after its first character; [`to_lint_back`] for a number without a point.
 #[inline]
 pub fn to_lreal_dot(text: &[u8]) -> f64 {
     let has_point = text.get(1..).is_some_and(|it| it.contains(&b'.'));

@@ -5,9 +5,9 @@ use core::fmt;
 /// The type of a string: the kind of its units, and its capacity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct StringType {
-    /// Whether it is a WSTRING, of UTF-16 code units; a STRING is of bytes.
+    /// Whether it is a WSTRING, which consists of UTF-16 code units; a STRING consists of bytes.
     pub wide: bool,
-    /// The most units that it holds.
+    /// The maximum number of units.
     pub capacity: u16,
 }
 
@@ -28,7 +28,7 @@ impl StringType {
         Self { capacity, ..self }
     }
 
-    /// A WSTRING or a STRING with this one's capacity.
+    /// A WSTRING or a STRING with the same capacity.
     #[must_use]
     pub const fn of_kind(self, wide: bool) -> Self {
         Self { wide, ..self }
@@ -39,17 +39,17 @@ impl StringType {
         if self.wide { "WSTRING" } else { "STRING" }
     }
 
-    /// What its capacity counts, in messages.
+    /// The unit of its capacity, in messages.
     pub const fn units(self) -> &'static str {
         if self.wide { "UTF-16 code units" } else { "bytes" }
     }
 
-    /// Bytes of a unit.
+    /// The size of a unit, in bytes.
     pub const fn unit_size(self) -> u32 {
         if self.wide { 2 } else { 1 }
     }
 
-    /// Bytes of a variable: its length, its units, and what aligns the next one.
+    /// The size of a variable, in bytes: its length, its units, and the padding for alignment.
     pub const fn size(self) -> u32 {
         2 + (self.capacity as u32 * self.unit_size()).next_multiple_of(2)
     }

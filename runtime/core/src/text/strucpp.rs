@@ -1,24 +1,24 @@
-//! Text in OpenPLC from v4.1 on, as STruC++ (0.6.1) has it. Counts and positions are without a sign there, so a negative
-//! one is beyond every text.
+//! Text in OpenPLC from v4.1 on, as in STruC++ (0.6.1). Counts and positions are unsigned there, so a negative
+//! one is beyond the end of every text.
 
 use super::{Destination, Unit, general, insert, left, mid, replace, right};
 
-/// How many digits C's `%g` writes.
+/// The number of digits that C's `%g` writes.
 const DIGITS: usize = 6;
 
-/// `LEFT`: all of the text for a negative count.
+/// `LEFT`: the whole text for a negative count.
 #[inline]
 pub fn left_or_all<U: Unit>(text: &[U], count: i64, out: &mut Destination<'_, U>) {
     left(text, without_sign(count), out);
 }
 
-/// `RIGHT`: all of the text for a negative count.
+/// `RIGHT`: the whole text for a negative count.
 #[inline]
 pub fn right_or_all<U: Unit>(text: &[U], count: i64, out: &mut Destination<'_, U>) {
     right(text, without_sign(count), out);
 }
 
-/// `MID`: nothing for a position outside the text; everything that follows for a negative count.
+/// `MID`: nothing for a position outside the text; for a negative count everything from the position to the end.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::mid_within};
@@ -45,7 +45,7 @@ pub fn insert_before<U: Unit>(text: &[U], inserted: &[U], position: i64, out: &m
     insert(text, inserted, without_sign(position).saturating_sub(1), out);
 }
 
-/// `DELETE`: as [`replace_within`] by nothing, but for a count of -1, which is C++'s `npos`: nothing follows.
+/// `DELETE`: like [`replace_within`] with an empty text, except for a count of -1, which is C++'s `npos`: it deletes up to the end.
 #[inline]
 pub fn delete_within<U: Unit>(text: &[U], count: i64, position: i64, out: &mut Destination<'_, U>) {
     replace_within(text, &[], if count == -1 { i64::MAX } else { count }, position, out);
@@ -85,7 +85,7 @@ const fn without_sign(count: i64) -> i64 {
     if count < 0 { i64::MAX } else { count }
 }
 
-/// A real with six significant digits, without zeros at its end: C's `%g`.
+/// A real with six significant digits, without trailing zeros: C's `%g`.
 ///
 /// ```
 /// use staunch_runtime::{Text, text::from_short};
@@ -118,7 +118,7 @@ pub fn to_lint_front(text: &[u8]) -> i64 {
     digits.iter().try_fold(0, |number, digit| step(number, i64::from(digit - b'0'))).unwrap_or(limit)
 }
 
-/// The same without a sign: C's `strtoull`, where a negative number wraps.
+/// The same for an unsigned number: C's `strtoull`, where a negative number wraps.
 ///
 /// ```
 /// use staunch_runtime::text::to_ulint_front;
@@ -132,7 +132,7 @@ pub fn to_ulint_front(text: &[u8]) -> u64 {
     number.map_or(u64::MAX, |it| if negative { it.wrapping_neg() } else { it })
 }
 
-/// Whether the number has a minus before it, and its digits; spaces before are passed over.
+/// Whether the number has a minus sign, and its digits; leading spaces are ignored.
 fn front(text: &[u8]) -> (bool, &[u8]) {
     let text = text.trim_ascii_start();
     let (negative, text) = match text.split_first() {

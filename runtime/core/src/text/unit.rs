@@ -1,22 +1,22 @@
 //! The units of strings, and their meaning as text.
 //!
-//! A STRING is UTF-8, as sources are; a byte that belongs to no character of that is the one that has its number, as
-//! in ISO 8859-1, which `'$E9'` is written by. A WSTRING is UTF-16.
+//! A STRING is UTF-8, as sources are; a byte that is not part of a UTF-8 character is the character with its number,
+//! as in ISO 8859-1, which `'$E9'` uses. A WSTRING is UTF-16.
 
 use core::fmt::{self, Write};
 
 /// A byte of a STRING, or a UTF-16 code unit of a WSTRING.
 pub trait Unit: Copy + Ord + fmt::Debug + 'static {
     const ZERO: Self;
-    /// In bytes.
+    /// The size in bytes.
     const SIZE: usize;
-    /// A byte of it, as it is in memory.
+    /// One of its bytes, as in memory.
     fn byte(self, at: usize) -> u8;
     #[must_use]
     fn with_byte(self, at: usize, byte: u8) -> Self;
-    /// As a literal.
+    /// The units as a literal.
     fn debug(units: &[Self], f: &mut fmt::Formatter<'_>) -> fmt::Result;
-    /// As text; invalid units show as U+FFFD.
+    /// The units as text; invalid ones are shown as U+FFFD.
     fn display(units: &[Self], f: &mut fmt::Formatter<'_>) -> fmt::Result;
 }
 
@@ -98,7 +98,7 @@ macro_rules! utf16 {
     };
 }
 
-/// How many code units [`utf16!`](crate::utf16) makes of a text.
+/// The number of code units in the result of [`utf16!`](crate::utf16).
 #[doc(hidden)]
 pub const fn utf16_length(text: &str) -> usize {
     let (bytes, mut at, mut length) = (text.as_bytes(), 0, 0);
@@ -110,7 +110,7 @@ pub const fn utf16_length(text: &str) -> usize {
     length
 }
 
-/// The code units of a text, as many as [`utf16_length`] says.
+/// The code units of a text; `N` is the result of [`utf16_length`].
 #[doc(hidden)]
 pub const fn utf16_units<const N: usize>(text: &str) -> [u16; N] {
     let (bytes, mut at, mut count, mut units) = (text.as_bytes(), 0, 0, [0; N]);

@@ -1,14 +1,14 @@
-//! Turns that are taken several at once, so that a loop of a few instructions is not slowed by them.
+//! Taking several turns at once, so that taking turns does not slow down a loop of a few instructions.
 
 use crate::Context;
 
-/// Runs a loop as it is written, but takes the turns of `N` rounds at once. Where fewer are left, it takes one by one, so
-/// that the turn that finds none is the same. `break`, `continue`, `return` and `?` are the loop's own.
+/// Runs a loop as it is written, but takes the turns of `N` iterations at once. If fewer are left, it takes them one by one, so
+/// that the loop stops at the same iteration as without the macro. `break`, `continue`, `return` and `?` work as in any loop.
 ///
-/// The optimiser unrolls the strip of `N` rounds. With the feature `small`, or where code is optimised for size, one by
-/// one is shorter.
+/// The optimiser unrolls the strip of `N` iterations. With the feature `small`, or if code is optimised for size, turns are taken
+/// one by one, which is shorter.
 ///
-/// With a name after `N`, `strips!(8, few; …)`, the loop takes no turns where that is true.
+/// With a name after `N`, `strips!(8, few; …)`, the loop takes no turns if that variable is true.
 ///
 /// ```
 /// use staunch_runtime::{Context, Fault, FaultKind, OrFault, strips};
@@ -84,18 +84,18 @@ macro_rules! strips {
     };
 }
 
-/// The turns of a loop that takes `N` at once. The context gets back the unused ones, however it ends.
+/// The turns of a loop that takes `N` at once. Unused turns are returned to the context, however the loop ends.
 #[derive(Debug)]
 pub struct Strips<'a, const N: u64> {
     cx: &'a Context,
-    /// The turns that the scan has left besides the strip.
+    /// The turns that the scan has left, without those of the strip.
     left: u64,
     /// The turns that are left of the strip.
     strip: u64,
 }
 
 impl<'a, const N: u64> Strips<'a, N> {
-    /// Whether code is to be short.
+    /// Whether code should be short.
     pub const IS_SMALL: bool = cfg!(feature = "small");
 
     #[inline]
@@ -103,7 +103,7 @@ impl<'a, const N: u64> Strips<'a, N> {
         Self { cx, left: cx.turns_left(), strip: 0 }
     }
 
-    /// Takes a strip after one that is used; whether that many are left.
+    /// Takes a new strip after the previous one is used up. Returns whether enough turns were left.
     #[inline]
     pub fn take(&mut self) -> bool {
         let suffices = self.left >= N && !Self::IS_SMALL;
@@ -119,7 +119,7 @@ impl<'a, const N: u64> Strips<'a, N> {
         self.strip == 0
     }
 
-    /// One turn, of a strip that is not used.
+    /// Takes one turn of a strip that is not used up.
     #[inline]
     pub fn turn(&mut self) {
         self.strip = self.strip.wrapping_sub(1);

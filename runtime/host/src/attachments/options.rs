@@ -105,7 +105,7 @@ impl SerialUnit {
             }
             _ => {
                 return Err(format!(
-                    "modbus-rtu has no setting `{key}`; there are unit, baud-rate, parity and stop-bits"
+                    "modbus-rtu has no setting `{key}`; its settings are unit, baud-rate, parity and stop-bits"
                 ));
             }
         }
@@ -139,7 +139,7 @@ impl AtEnd {
         let found = Self::ALL.iter().find(|it| it.0 == text);
         found
             .map(|it| it.1)
-            .ok_or_else(|| format!("`{text}` is nothing that outputs do at the end: there are zero and hold"))
+            .ok_or_else(|| format!("`{text}` is not a policy for outputs at the end: write zero or hold"))
     }
 }
 
@@ -167,7 +167,10 @@ mod tests {
             ("modbus-rtu:/dev/ttyS0,baud-rate=96", "`96` is not a number of bits a second from 300 to 4000000"),
             ("modbus-rtu:/dev/ttyS0,parity=mark", "`mark` is not none, even or odd"),
             ("modbus-rtu:/dev/ttyS0,stop-bits=3", "`3` is not 1 or 2"),
-            ("modbus-rtu:/dev/ttyS0,baud=9600", "no setting `baud`; there are unit, baud-rate, parity and stop-bits"),
+            (
+                "modbus-rtu:/dev/ttyS0,baud=9600",
+                "no setting `baud`; its settings are unit, baud-rate, parity and stop-bits",
+            ),
         ] {
             let refused = Connection::parse(text).unwrap_err();
             assert!(refused.contains(expected), "{refused}");

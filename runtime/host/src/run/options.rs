@@ -1,4 +1,4 @@
-//! What is to be run, and how.
+//! What to run, and how.
 
 use crate::Error;
 use crate::attachments::Io;
@@ -34,53 +34,53 @@ impl Moment {
 /// What to run and how. The default is 100 scans.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// An instance or a PROGRAM by name; all of them if the source has a CONFIGURATION.
+    /// An instance or a PROGRAM by name; without it, all of them if the source has a CONFIGURATION.
     pub program: Option<String>,
-    /// `None`: to [`to`](Self::to), else to the last row of the stimulus, or 100; in real time without a
-    /// stimulus, for ever.
+    /// `None`: up to [`to`](Self::to), otherwise to the last row of the stimulus, or 100 scans; in real time without a
+    /// stimulus, without end.
     pub scans: Option<u64>,
     /// Nanoseconds between two scans, above zero; 10 ms, or the TASKs' intervals.
     pub cycle: Option<Time>,
-    /// Turns that the loops of one scan may take together; [`Context::TURNS`](staunch_runtime::Context::TURNS).
+    /// The turns that all loops of one scan may take together; [`Context::TURNS`](staunch_runtime::Context::TURNS).
     pub loop_budget: Option<u64>,
     pub stimulus: Option<PathBuf>,
-    /// Variables that have one value before and after each scan, as `NAME=VALUE`.
+    /// Variables that are forced to a fixed value before and after each scan, as `NAME=VALUE`.
     pub forces: Vec<String>,
-    /// CSV, VCD, SVG or HTML by its ending; `-` is standard output.
+    /// CSV, VCD, SVG or HTML, depending on its extension; `-` is standard output.
     pub trace: Option<PathBuf>,
     /// The first and the last scan of the trace or table.
     pub from: Option<Moment>,
     pub to: Option<Moment>,
     /// Variables to trace, separated by commas.
     pub vars: Option<String>,
-    /// Numbers that a picture shows in one lane, each time two or three names separated by commas.
+    /// Numeric variables that a picture shows in one lane: each entry has two or three names separated by commas.
     pub overlay: Vec<String>,
     /// A file that keeps retained variables from run to run.
     pub retain: Option<PathBuf>,
-    /// In real time, how soon a change of retained variables is on disk, in nanoseconds; 0 is after every
-    /// scan. [`RETAIN_WITHIN`](Self::RETAIN_WITHIN) without.
+    /// In real time, the longest time until a change of retained variables is on disk, in nanoseconds; 0 is after every
+    /// scan. [`RETAIN_WITHIN`](Self::RETAIN_WITHIN) if it is not set.
     pub retain_within: Option<Time>,
-    /// Waits for the time at which each scan is due.
+    /// Waits until each scan is due.
     pub realtime: bool,
-    /// How a run in real time keeps its time.
+    /// Settings of a run in real time.
     pub pacing: Pacing,
     /// In real time, what inputs and outputs are connected with.
     pub io: Io,
-    /// The machine learns of each scan, and may end the run.
+    /// The machine is called before each scan, and may end the run.
     pub debugged: bool,
-    /// Prints nothing but errors and the trace.
+    /// Prints only errors and the trace.
     pub quiet: bool,
     /// Prints the last scans as a table, if no trace is asked for.
     pub table: bool,
-    /// Prints what the run came to as JSON, in place of the table.
+    /// Prints the result of the run as JSON, instead of the table.
     pub json: bool,
 }
 
 impl Options {
-    /// How soon a change of retained variables is on disk where nothing else is asked for: a second.
+    /// The longest time until a change of retained variables is on disk by default: a second.
     pub const RETAIN_WITHIN: Time = 1_000_000_000;
 
-    /// A large array has many columns: they are not made for nothing.
+    /// A large array has many columns, so they are made only if they are needed.
     pub(super) fn shows_values(&self) -> bool {
         self.trace.is_some() || self.vars.is_some() || self.has_table()
     }
@@ -92,7 +92,7 @@ impl Options {
 }
 
 impl Options {
-    /// No file is read and written, or written twice.
+    /// Checks that no file is both read and written, or written twice.
     pub(super) fn keep_apart(&self) -> Result<(), String> {
         // What runs is not a file to write either.
         let own = std::env::current_exe().ok();
@@ -104,7 +104,7 @@ impl Options {
         keep_apart(&inputs, &outputs)
     }
 
-    /// Says on standard error what went wrong; with `json`, as an object where all objects go.
+    /// Reports the error on standard error; with `json`, as an object on the stream of all objects.
     pub fn report(&self, error: &Error) {
         match error {
             Error::ClosedPipe => {}

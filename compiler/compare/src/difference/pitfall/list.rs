@@ -13,7 +13,7 @@ const PITFALLS: [&str; 22] = [
     "CTD at 0: [iec|IEC goes negative; ][siemens|S7 goes negative; ][logix|Logix goes negative; ][cscape|CSCAPE stays at 0; ][codesys|CODESYS stays at 0; ]",
     "Logix CTD: DN is TRUE while ACC >= PRE, so it drops when done; it has no load input.",
     "Input already TRUE at start-up: Logix does not count it, the others do.",
-    "Input still TRUE after a reset: [logix|Logix counts one when the reset goes; ][cscape|CSCAPE continues to count; ][iec|IEC does not count; ][siemens|S7 does not count; ][codesys|CODESYS does not count; ][openplc openplc4|OPENPLC does not count; ]",
+    "Input still TRUE after a reset: [logix|Logix counts one when the reset ends; ][cscape|CSCAPE continues to count; ][iec|IEC does not count; ][siemens|S7 does not count; ][codesys|CODESYS does not count; ][openplc openplc4|OPENPLC does not count; ]",
     "Limits: [iec|IEC saturates; ][siemens|S7 saturates; ][codesys|CODESYS saturates; ][logix|Logix wraps with OV/UN; ]",
     "Widths: an INT, a WORD and a DINT do not hold the same counts. [codesys|`CV < 0` is never TRUE in CODESYS; -1 written to a WORD preset is 65535. ]",
     "Pin names R/LD against RESET/LOAD: positional calls survive a move, named ones do not.",
@@ -27,9 +27,9 @@ const PITFALLS: [&str; 22] = [
     "CD: OPENPLC4 (OpenPLC from v4.1, Editor 4.2.11 too) counts down when the input falls, the others when it rises.",
     "Both edges of a CTUD in one call: OPENPLC4 counts up, then down, so at PV it counts down; on the others CV stays.",
     "TON, TOF and TP on OPENPLC, before and from v4.1, see in a later call that the time is over: with PT = 0, Q of a TON comes, and of a TOF goes, one call late, and a TP gives a pulse of one call.",
-    "LD held TRUE: S7 with `s7-ld = \"edge\"` loads PV in its first call; the others in each, so that CV follows PV and is PV when R goes.",
+    "LD held TRUE: S7 with `s7-ld = \"edge\"` loads PV in its first call; the others in each, so that CV follows PV and equals PV when R ends.",
     "Q of a CTD whose count is negative, as after a load of a negative PV: CSCAPE compares `CV = 0`, the others `CV <= 0`.",
-    "Q of a CTD, and QD, is FALSE before the first call; what stands for it in Logix, `ACC <= 0`, is TRUE at once.",
+    "Q of a CTD, and QD, is FALSE before the first call; its equivalent in Logix, `ACC <= 0`, is TRUE at once.",
 ];
 
 impl Pitfall {

@@ -44,8 +44,8 @@ impl Choice for MixedNumbers {
 
     fn words(self) -> &'static str {
         match self {
-            Self::HoldsBoth => "at one that holds all values of both; refused where there is none",
-            Self::HoldsMost => "at one that holds all values of both; LINT or LREAL where there is none",
+            Self::HoldsBoth => "at a type that holds all values of both; refused if there is none",
+            Self::HoldsMost => "at a type that holds all values of both; LINT or LREAL if there is none",
             Self::Ranked => "at the higher of SINT, USINT, INT, UINT, DINT, UDINT, LINT, ULINT, REAL, LREAL",
         }
     }
@@ -121,7 +121,7 @@ impl ByZero {
     pub(super) const fn words(self) -> &'static str {
         match self {
             Self::Faults => "a fault",
-            Self::Reported => "of integers the dividend, of reals infinite or not a number; it is reported",
+            Self::Reported => "for integers the dividend, for reals infinity or NaN; it is reported",
             Self::GivesZero => "0",
         }
     }
@@ -162,8 +162,8 @@ impl Choice for TimeAsNumber {
         match self {
             Self::Microseconds => "microseconds",
             Self::Milliseconds => "milliseconds",
-            Self::WholeMilliseconds => "milliseconds; of a REAL whole ones",
-            Self::CutMilliseconds => "milliseconds; of a REAL the fraction is cut",
+            Self::WholeMilliseconds => "milliseconds; from a REAL, whole ones only",
+            Self::CutMilliseconds => "milliseconds; the fraction of a REAL is cut off",
             Self::Seconds => "seconds",
         }
     }
@@ -182,7 +182,7 @@ impl Choice for RealAndBits {
     fn words(self) -> &'static str {
         match self {
             Self::Value => "the value",
-            Self::Bits => "the bits, where there are as many",
+            Self::Bits => "the bits, if both have the same number of bits",
         }
     }
 }
@@ -233,7 +233,7 @@ impl Choice for IntegerText {
     fn words(self) -> &'static str {
         match self {
             Self::Digits => "`207`",
-            Self::SignAndDigits => "`+207`; of an unsigned type `207`",
+            Self::SignAndDigits => "`+207`; `207` from an unsigned type",
         }
     }
 }
@@ -275,9 +275,9 @@ impl Choice for RealOfText {
         match self {
             Self::WithExponent => "with an exponent; a comma ends it",
             Self::AfterPoint => {
-                "with an exponent, where it has a point; else an integer, in which commas are passed over"
+                "with an exponent, if it has a point; otherwise an integer, in which commas are ignored"
             }
-            Self::FixedPoint => "without an exponent; commas are passed over",
+            Self::FixedPoint => "without an exponent; commas are ignored",
         }
     }
 }
@@ -372,8 +372,8 @@ impl Choice for RotatedConstant {
 
     fn words(self) -> &'static str {
         match self {
-            Self::BitsOfPlace => "bits of the type of its place",
-            Self::FewestBits => "bits of the smallest type that holds it",
+            Self::BitsOfPlace => "the bits of the type that is expected in its place",
+            Self::FewestBits => "the bits of the smallest type that holds it",
         }
     }
 }
@@ -398,9 +398,9 @@ impl Choice for Functions {
 
     fn words(self) -> &'static str {
         match self {
-            Self::OfTheStandard => "as the standard",
-            Self::OfMatiec => "as MATIEC's library",
-            Self::OfStrucpp => "as STruC++'s library",
+            Self::OfTheStandard => "as in the standard",
+            Self::OfMatiec => "as in MATIEC's library",
+            Self::OfStrucpp => "as in STruC++'s library",
         }
     }
 }
@@ -420,11 +420,11 @@ impl Choice for Literals {
 
     fn words(self) -> &'static str {
         match self {
-            Self::OfTheirPlace => "of its place's type",
+            Self::OfTheirPlace => "the type that is expected in its place",
             Self::OfC => "C's `double`, `int` or `long`",
-            Self::Immediate => "of its place's type; two integers together are DINTs",
+            Self::Immediate => "the type that is expected in its place; in an operation on two such integers, DINT",
             Self::Smallest => {
-                "of its place's type; with an unsigned number or bits that do not hold it, the smallest unsigned type"
+                "the type that is expected in its place; with an unsigned number or bits that do not hold it, the smallest unsigned type"
             }
         }
     }
@@ -443,7 +443,7 @@ impl Choice for SecondBool {
     fn words(self) -> &'static str {
         match self {
             Self::Always => "evaluated",
-            Self::IfItDecides => "evaluated where the left one does not decide; of `AND(…)` and `OR(…)` always",
+            Self::IfItDecides => "evaluated only if the left side does not decide; in `AND(…)` and `OR(…)` always",
         }
     }
 }
@@ -530,9 +530,9 @@ impl Choice for LoopLimit {
     fn words(self) -> &'static str {
         match self {
             Self::Once => "evaluated once",
-            Self::EachTurn => "read in each turn",
+            Self::EachTurn => "evaluated in each iteration",
             Self::EachTurnUpward => {
-                "read in each turn; it counts down only by a negative number, not by a variable or CONSTANT"
+                "evaluated in each iteration; it counts down only by a negative number, not by a variable or CONSTANT"
             }
         }
     }
@@ -571,7 +571,7 @@ impl Choice for ProgramOrder {
     fn words(self) -> &'static str {
         match self {
             Self::ByPriority => "by the PRIORITY of their TASKs",
-            Self::OfText => "that of the RESOURCE's text, whatever the PRIORITY",
+            Self::OfText => "the order in the RESOURCE's source, whatever the PRIORITY",
         }
     }
 }

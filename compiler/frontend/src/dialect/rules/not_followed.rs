@@ -112,8 +112,8 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     .told(),
     of_strucpp(
         Use::Part(Part::Enable),
-        "a statement with a call whose EN is FALSE is left out, so that its variable keeps its value; within an expression EN is \
-         passed over, and a block's own input with that name is never set",
+        "a statement with a call whose EN is FALSE is skipped, so that its variable keeps its value; within an expression EN is \
+         ignored, and a block's own input with that name is never set",
     )
     .told(),
     of_strucpp(Use::Part(Part::Temp), "it keeps its value from call to call"),
@@ -123,7 +123,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_strucpp(Use::Part(Part::Overflow), OVERFLOWN_CPP),
     of_matiec(
         Use::Part(Part::Index),
-        "it is not checked: what lies beyond the array is read or written; here it is a fault",
+        "it is not checked: memory outside the array is read or written; here it is a fault",
     ),
     of_matiec(Use::Part(Part::Subrange), UNCHECKED),
     of_strucpp(Use::Part(Part::Subrange), UNCHECKED),
@@ -170,12 +170,12 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     of_strucpp(Use::Part(Part::SubrangeStart), "a variable without an initial value starts with 0").told(),
     of_strucpp(
         Use::Part(Part::NamedNumber),
-        "its variables are C++'s integers: 30000 + 10000 into a DINT is 40000, NOT of bits is C++'s `!`, and one in a FUNCTION starts with anything",
+        "its variables are C++'s integers: 30000 + 10000 into a DINT is 40000, NOT of bits is C++'s `!`, and one in a FUNCTION starts with an arbitrary value",
     ),
     of_strucpp(Use::Part(Part::NamedText), "it holds 254 characters"),
     of_strucpp(
         Use::Part(Part::FunctionOutput),
-        "it is the caller's variable: it starts with what that holds, and keeps it where the body assigns nothing",
+        "it is the caller's variable: it starts with that variable's value, and keeps it if the body assigns nothing",
     ),
     of_strucpp(
         Use::Part(Part::FunctionDefault),
@@ -183,7 +183,7 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
     ),
     of_strucpp(
         Use::Part(Part::EvaluationOrder),
-        "the right side is evaluated first, and the last argument: after `z := 5`, `z + Change(z)` adds what Change has made of `z`",
+        "the right operand and the last argument are evaluated first: after `z := 5`, `z + Change(z)` adds the value that Change has given to `z`",
     )
     .told(),
     of_strucpp(Use::Part(Part::InOutCopied), COPIED),
@@ -203,14 +203,14 @@ pub const NOT_FOLLOWED: &[NotFollowed] = &[
         Use::Part(Part::TimeByReal),
         "in an expression it is a double until it is stored: with `t` of 10 ms, `t / 3.0 * 3.0 = t` is TRUE",
     ),
-    of_strucpp(Use::Part(Part::NamedOrder), "the names are passed over: the first argument goes to the first input").told(),
-    of_strucpp(Use::Part(Part::PositionsOfBlock), "only inputs are counted, so that arguments go to others").told(),
+    of_strucpp(Use::Part(Part::NamedOrder), "the names are ignored: the first argument goes to the first input").told(),
+    of_strucpp(Use::Part(Part::PositionsOfBlock), "only inputs are counted, so arguments go to the wrong parameters").told(),
     of_strucpp(Use::Part(Part::NoTask), "it runs in the first TASK").told(),
     of_strucpp(Use::Part(Part::ComparedLiterals), "C++ compares addresses, and the linker decides").told(),
     not_followed(
         Dialect::Logix,
         Elementary::Dt,
-        "64 bits of microseconds since 1970: it has no parts of one",
+        "64 bits of microseconds since 1970: it has no fractions of a microsecond",
         LOGIX_TIMES,
     ),
     not_followed(Dialect::Siemens, Elementary::Date, "16 bits of days: from 1990-01-01 to 2168-12-31", SIEMENS_DATES),
@@ -222,19 +222,18 @@ const SHIFTED: &str = "C leaves it undefined, and the compiler and the processor
                        n = 33 is 16#7FFF";
 
 const OVERFLOWN: &str = "C leaves it undefined, and the compiler and the processor decide: on x86-64 `n + 1 > n` of a DINT is always \
-                         TRUE, and its least number divided by -1 ends the program";
+                         TRUE, and its smallest value divided by -1 ends the program";
 
 const OVERFLOWN_CPP: &str = "C++ leaves it undefined, and the compiler and the processor decide: on x86-64 `n + 1 > n` of a DINT may be \
-                             TRUE with -O and is FALSE without, and its least number divided by -1 ends the program";
+                             TRUE with -O and is FALSE without, and its smallest value divided by -1 ends the program";
 
-const COPIED: &str =
-    "it is copied in before the call and back after it, each by itself: what the body writes to one shows in no other";
+const COPIED: &str = "it is copied in before the call and back after it, each one separately: a value that the body writes to one does not show in the others";
 
 const LOOKED_UP_AFTER: &str = "it is looked up after the call, and after the targets before it: the index of `x(i => i, o => list[i])` is the new `i`";
 
 const ONE_BY_ONE: &str = "inputs are assigned one by one: in `x(a := 5, b := x.a)`, `b` is 5";
 
-const NO_SIGN: &str = "what is computed with it has no sign: `LEN(s) - 5 < 0` is FALSE";
+const NO_SIGN: &str = "arithmetic with its result is unsigned: `LEN(s) - 5 < 0` is FALSE";
 
 const ENDLESS: &str = "the counter wraps, and the loop does not end";
 
@@ -243,9 +242,9 @@ const PARTS: &str = "seconds and nanoseconds are separate: `T#500ms + T#500ms = 
 
 const BEFORE: &str = "the process ends where P is 0";
 
-const LAST_DIGIT: &str = "the C library's: the last digit of an LREAL may be another";
+const LAST_DIGIT: &str = "computed by the C library: the last digit of an LREAL may differ";
 
-const TOO_LONG: &str = "where the result is longer than the first text may be, the end of what is put in is dropped";
+const TOO_LONG: &str = "if the result does not fit the first string, the end of the inserted text is dropped";
 
 const fn of_matiec(uses: Use, what: &'static str) -> NotFollowed {
     NotFollowed { dialect: Dialect::Openplc, what, evidence: MATIEC, uses, is_told: false }
@@ -318,7 +317,7 @@ pub const EDGES: &[Edge] = &[
     edge(
         Dialect::Codesys,
         "`SHL`, `SHR` of a constant without a type",
-        "of the type of its place",
+        "the type that is expected in its place",
         "CODESYS help, \"SHL\": nothing; Beckhoff, TwinCAT 2, \"SHL\": of the smallest type that holds it, so that `SHL(16#F0, 4)` is 0",
         &[Use::Part(Part::ShiftOfConstant)],
     ),
@@ -369,14 +368,14 @@ pub const EDGES: &[Edge] = &[
         Dialect::Logix,
         "an integer with more digits than the real operand",
         "the nearest real, of two the even one",
-        "1756-RM006K, p. 543: so; p. 546: the lower bits are truncated",
+        "1756-RM006K, p. 543: the same; p. 546: the lower bits are truncated",
         &[Use::Conversion(Class::Int, Class::Real)],
     ),
     edge(
         Dialect::Siemens,
         "a conversion to an integer type that does not hold the number",
-        "of a real the nearest value, of an integer the low bits",
-        "no page read says the value; ENO is FALSE",
+        "the nearest value of a real, the low bits of an integer",
+        "no page that we read gives the value; ENO is FALSE",
         &[Use::Conversion(Class::Real, Class::Int), Use::Conversion(Class::Int, Class::Int)],
     ),
     edge(
@@ -403,8 +402,8 @@ pub const EDGES: &[Edge] = &[
     edge(
         Dialect::Siemens,
         "`TONR` in the call in which IN falls; IN still TRUE after R, or after `RESET_TIMER`",
-        "the time up to that call counts; it times anew",
-        "S7-1200 manual, 11/2011, table 7-19: nothing of it",
+        "the time up to that call counts; it starts timing again",
+        "S7-1200 manual, 11/2011, table 7-19: does not say",
         &[],
     ),
     edge(
@@ -425,7 +424,7 @@ pub const EDGES: &[Edge] = &[
         Dialect::Cscape,
         "every value of an operation, function or conversion on this page",
         "as `iec`",
-        "no page of Horner was found",
+        "no Horner page was found",
         &[
             Use::Function("MID"),
             Use::Function("INSERT"),

@@ -28,7 +28,7 @@ pub(super) const IEC: Rules = Rules {
     limit_crossed: follows(LimitCrossed::Maximum, "IEC 61131-3, table 32: MIN(MAX(IN, MN), MX)"),
     sqrt_of_negative: follows(SqrtOfNegative::NotANumber, "IEC 60559, as IEC 61131-3 has REAL"),
     modulo_of_reals: follows(ModuloOfReals::Refused, "IEC 61131-3, table 29: of ANY_INT"),
-    rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page says it"),
+    rotated_constant: follows(RotatedConstant::BitsOfPlace, "no page documents it"),
     functions: follows(Functions::OfTheStandard, "IEC 61131-3, 6.6.2.5"),
     literals: follows(Literals::OfTheirPlace, "IEC 61131-3, 6.3.3; REAL and LREAL are left to the implementer"),
     second_bool: follows(SecondBool::Always, "IEC 61131-3, 7.3.2: the implementer may say otherwise"),
@@ -42,7 +42,7 @@ pub(super) const IEC: Rules = Rules {
 
 /// The choice of another dialect, where no page of the vendor says anything.
 const fn undocumented<T: Copy>(rule: Followed<T>) -> Followed<T> {
-    Followed { choice: rule.choice, evidence: "no page of Horner says it; as `iec`" }
+    Followed { choice: rule.choice, evidence: "no Horner page documents it; as `iec`" }
 }
 
 pub(super) const CSCAPE: Rules = Rules {
@@ -57,7 +57,7 @@ pub(super) const CSCAPE: Rules = Rules {
     shr_of_signed: undocumented(IEC.shr_of_signed),
     time_as_number: undocumented(IEC.time_as_number),
     real_and_bits: undocumented(IEC.real_and_bits),
-    default_string: follows(DefaultString::Holds80, "no page of Horner says it; as CODESYS"),
+    default_string: follows(DefaultString::Holds80, "no Horner page documents it; as CODESYS"),
     integer_text: undocumented(IEC.integer_text),
     date_as_number: undocumented(IEC.date_as_number),
     real_of_text: undocumented(IEC.real_of_text),

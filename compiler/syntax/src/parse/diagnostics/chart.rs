@@ -26,7 +26,7 @@ pub fn open_element(opened: Span, end: &str) -> Diagnostic {
 pub fn unknown_qualifier(name: Name<'_>) -> Diagnostic {
     let it = Diagnostic::new(Code::E0515, name.span, format!("`{}` is not an action qualifier", name.text))
         .label("expected a qualifier")
-        .help(format!("qualifiers are {}", Qualifier::names().collect::<Vec<_>>().join(", ")));
+        .help(format!("the qualifiers are {}", Qualifier::names().collect::<Vec<_>>().join(", ")));
     match nearest(name.text, Qualifier::names()) {
         Some(meant) => it.fix(name.span, meant),
         None => it,
@@ -45,14 +45,14 @@ pub fn qualifier_without_time(name: Name<'_>) -> Diagnostic {
 pub fn qualifier_with_time(name: Name<'_>, time: Span) -> Diagnostic {
     let word = name.text.to_ascii_uppercase();
     Diagnostic::new(Code::E0515, time, format!("the qualifier {word} has no time"))
-        .label("this says nothing")
+        .label("this time has no meaning")
         .help("remove it, or write L (limited), D (delayed), SD, DS or SL")
         .fix(time, "")
 }
 
 /// `TRANSITION x := y; END_TRANSITION`
 pub fn transition_without_steps(span: Span) -> Diagnostic {
-    Diagnostic::new(Code::E0515, span, "a transition without its steps")
+    Diagnostic::new(Code::E0515, span, "this transition does not name its steps")
         .label("expected FROM")
         .help("write the steps before and after it: `TRANSITION FROM a TO b := condition; END_TRANSITION`")
 }

@@ -410,7 +410,7 @@ impl<'w> Writer<'w> {
         let node = &self.diagram.nodes[at];
         match self.open.insert(at) {
             true => Ok(()),
-            false => Err(refuse(node, Trouble::Odd, "this element is wired to itself in a circle".to_owned())),
+            false => Err(refuse(node, Trouble::Odd, "this element is wired back to itself in a loop".to_owned())),
         }
     }
 

@@ -114,7 +114,7 @@ impl<'t> Scanner<'t> {
                     Some((_, length)) => self.at += length,
                     None => return Err(self.broken("no character is written like this")),
                 },
-                Some(0..=0x1f) => return Err(self.broken("a control character in a text")),
+                Some(0..=0x1f) => return Err(self.broken("a control character in a string")),
                 Some(_) => self.at += 1,
             }
         }

@@ -30,7 +30,7 @@ fn what_is_not_json_is_refused_at_its_place() {
         ("[\"a]", 1, "this text is not closed"),
         ("\"a\\x\"", 2, "no character is written like this"),
         ("\"\\u12g4\"", 1, "no character is written like this"),
-        ("\"a\nb\"", 2, "a control character in a text"),
+        ("\"a\nb\"", 2, "a control character in a string"),
         ("01", 0, "this is not a number"),
         ("[1.]", 1, "this is not a number"),
         ("{} {}", 3, "text after the end of the value"),

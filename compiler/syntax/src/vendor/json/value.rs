@@ -35,7 +35,7 @@ impl Value {
             Kind::Null => "null",
             Kind::Truth => "a truth value",
             Kind::Number => "a number",
-            Kind::Text => "a text",
+            Kind::Text => "a string",
             Kind::List(_) => "a list",
             Kind::Object(_) => "an object",
         }

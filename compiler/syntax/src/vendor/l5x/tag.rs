@@ -184,7 +184,7 @@ fn shown(file: &str, element: &Element<'_>, ty: &str, dimensions: &str, names: &
     let values = |name: &str| match names.shown.get(&key(name)).map(|it| it.0) {
         Some(Shown::Values { preset, accum }) => Ok(Some(format!("(PRE := {preset}, ACC := {accum})"))),
         Some(Shown::Several) => {
-            Err(format!("rungs show different values of `{name}`, and the tag has no data that say which is right"))
+            Err(format!("rungs show different values of `{name}`, and the tag has no data that shows which is right"))
         }
         None => Ok(None),
     };

@@ -46,7 +46,7 @@ fn of_board(file: &str, member: &Member, out: &mut Assembly) -> Vec<Pin> {
     if let Kind::List(pins) = &member.value.kind {
         return board(file, Some(&name), pins, out);
     }
-    let message = format!("the pins of `{}` are {}, and not a list", shown(&name), member.value.what());
+    let message = format!("the pins of `{}` are {}, not a list", shown(&name), member.value.what());
     out.problem(Trouble::Odd, message, &member.name.place);
     Vec::new()
 }

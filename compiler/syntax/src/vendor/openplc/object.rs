@@ -17,7 +17,7 @@ impl<'t> Object<'t> {
         if let Kind::Object(members) = &value.kind {
             return Some(Self { file, place: &value.place, members });
         }
-        let message = format!("{} is not {what} of OpenPLC Editor, which is an object", value.what());
+        let message = format!("{what} of OpenPLC Editor must be an object, not {}", value.what());
         out.problem(Trouble::Odd, message, &first(&value.place));
         None
     }
@@ -60,7 +60,7 @@ impl<'t> Object<'t> {
     pub fn text(&self, name: &str, out: &mut Assembly) -> Option<&'t Value> {
         let value = self.get(name)?;
         if value.kind != Kind::Text {
-            wrong(name, value, "a text", out);
+            wrong(name, value, "a string", out);
             return None;
         }
         (!value.text(self.file).trim().is_empty()).then_some(value)
@@ -97,7 +97,7 @@ fn first(place: &Range<usize>) -> Range<usize> {
 }
 
 fn wrong(name: &str, value: &Value, expected: &str, out: &mut Assembly) {
-    let message = format!("`{name}` is {} here, and {expected} in files of OpenPLC Editor", value.what());
+    let message = format!("`{name}` is {} here, but must be {expected} in files of OpenPLC Editor", value.what());
     out.problem(Trouble::Odd, message, &first(&value.place));
 }
 

@@ -80,7 +80,7 @@ fn text(file: &str, value: &Value, out: &mut Assembly) -> Body {
     if value.kind == Kind::Text {
         return Body::Text(value.chunks(file));
     }
-    let message = format!("a body in Structured Text is a text; this is {}", value.what());
+    let message = format!("a body in Structured Text must be a string, not {}", value.what());
     out.problem(Trouble::Odd, message, &(value.place.start..value.place.start + 1));
     Body::None
 }

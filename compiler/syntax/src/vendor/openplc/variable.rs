@@ -94,7 +94,7 @@ pub fn array(object: &Object<'_>, out: &mut Assembly) -> Option<Vec<Chunk>> {
         let bounds = Object::required(file, it, "a dimension", out)?.text("dimension", out)?;
         let is_it = bounds.raw(file).chars().all(|it| it.is_alphanumeric() || " _.#-+*".contains(it));
         if !is_it {
-            let message = format!("`{}` is not the bounds of an array", shown(&bounds.text(file)));
+            let message = format!("`{}` does not give the bounds of an array", shown(&bounds.text(file)));
             out.problem(Trouble::Odd, message, &bounds.place);
             return None;
         }

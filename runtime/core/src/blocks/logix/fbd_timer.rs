@@ -6,15 +6,15 @@ use crate::{Context, Time};
 /// `FBD_TIMER`, the tag of the instructions `TONR`, `TOFR` and `RTOR`. A program sets its inputs as
 /// members; `pre` and `acc` count milliseconds.
 ///
-/// The vendor's tag starts with `enable_in` TRUE; [`new`](Self::new) is all zero, and whoever
-/// makes an instance sets it.
+/// The vendor's tag starts with `enable_in` TRUE; [`new`](Self::new) is all zero, so set it after
+/// you create an instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FbdTimer {
     /// FALSE: the instruction does nothing.
     pub enable_in: bool,
     pub timer_enable: bool,
-    /// From 0 on; the instruction is not executed with one below.
+    /// 0 or more; with a negative preset the instruction is not executed.
     pub pre: i32,
     pub reset: bool,
     pub enable_out: bool,
@@ -47,7 +47,7 @@ impl FbdTimer {
         }
     }
 
-    /// `RTOR`: as `TONR`, but `acc` and `dn` stay as they are when `timer_enable` falls; `reset` alone clears
+    /// `RTOR`: like `TONR`, but `acc` and `dn` stay as they are when `timer_enable` falls; only `reset` clears
     /// them.
     #[inline]
     pub fn rtor(&mut self, cx: &Context) {
@@ -74,7 +74,7 @@ impl FbdTimer {
     }
 
     /// Whether the instruction is executed. In the first scan, in its first run, and when `enable_in`
-    /// rises, the flags are cleared before, and `acc` is what `initial` makes of it and `pre`.
+    /// rises, the flags are cleared first, and `initial` computes `acc` from its old value and `pre`.
     fn executes(&mut self, cx: &Context, initial: fn(i32, i32) -> i32) -> bool {
         let starts = self.enable_in & (cx.first_scan | !self.enabled_before);
         if !self.enable_in {

@@ -5,8 +5,8 @@ use crate::block::pins;
 
 /// `FBD_ONESHOT`, the tag of the instructions `OSRI` and `OSFI`. A program sets its inputs as members.
 ///
-/// The vendor's tag starts with `enable_in` TRUE; [`new`](Self::new) is all zero, and whoever
-/// makes an instance sets it.
+/// The vendor's tag starts with `enable_in` TRUE; [`new`](Self::new) is all zero, so set it after
+/// you create an instance.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FbdOneshot {
@@ -20,8 +20,8 @@ pub struct FbdOneshot {
 }
 
 impl FbdOneshot {
-    /// `OSRI`: `output_bit` in an execution in which `input_bit` is TRUE and was FALSE in the one before.
-    /// In the first scan it counts as one that was TRUE.
+    /// `OSRI`: `output_bit` is TRUE in an execution in which `input_bit` is TRUE but was FALSE in the previous one.
+    /// In the first scan, the previous input counts as TRUE.
     #[inline]
     pub fn osri(&mut self, cx: &Context) {
         self.enable_out = self.enable_in;
@@ -31,8 +31,8 @@ impl FbdOneshot {
         }
     }
 
-    /// `OSFI`: `output_bit` in an execution in which `input_bit` is FALSE and was TRUE in the one before.
-    /// In the first scan it counts as one that was FALSE.
+    /// `OSFI`: `output_bit` is TRUE in an execution in which `input_bit` is FALSE but was TRUE in the previous one.
+    /// In the first scan, the previous input counts as FALSE.
     #[inline]
     pub fn osfi(&mut self, cx: &Context) {
         self.enable_out = self.enable_in;

@@ -3,8 +3,8 @@
 use crate::block::pins;
 use crate::{Context, Time};
 
-/// `TIMER`, the tag of the instructions `TON`, `TOF`, `RTO` and `RES`. `pre` and `acc` count milliseconds, from 0
-/// on: the compiler lets a program fault before an instruction times with one below.
+/// `TIMER`, the tag of the instructions `TON`, `TOF`, `RTO` and `RES`. `pre` and `acc` count milliseconds, 0
+/// or more: the compiler emits a check that faults before an instruction times with a negative value.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timer {
@@ -33,7 +33,7 @@ impl Timer {
         rung
     }
 
-    /// `RTO`: as `TON`, but `acc` and `dn` stay as they are while the rung is FALSE; `RES` alone clears them.
+    /// `RTO`: like `TON`, but `acc` and `dn` stay as they are while the rung is FALSE; only `RES` clears them.
     /// Returns the rung.
     #[inline]
     pub fn rto(&mut self, rung: bool, cx: &Context) -> bool {
@@ -64,7 +64,7 @@ impl Timer {
         rung
     }
 
-    /// Before the first scan, for a timer that a `TON` works on: it starts anew.
+    /// Before the first scan, for a timer that a `TON` works on: it starts again from 0.
     #[inline]
     pub fn prescan_ton(&mut self) {
         self.clear(0);

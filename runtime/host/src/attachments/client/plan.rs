@@ -144,8 +144,8 @@ fn most(table: Table, bits: usize, registers: usize) -> usize {
 fn start(place: &str) -> Result<Start, String> {
     let wrong = || {
         format!(
-            "`{place}` is no place at a server: write, for example, \"input-register 3\"; there are coil, discrete-input, \
-             input-register and holding-register, each with a number from 0 to 65535"
+            "`{place}` is not a place at a server: write, for example, \"input-register 3\"; the tables are coil, discrete-input, \
+             input-register and holding-register, each with the numbers from 0 to 65535"
         )
     };
     let is_line = !place.chars().any(char::is_control);

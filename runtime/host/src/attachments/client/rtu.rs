@@ -176,7 +176,7 @@ impl Expected<'_> {
     fn stranger(&self, frame: &[u8]) -> Result<u8, Trouble> {
         match is_whole(frame) {
             true if frame[0] != self.unit => Ok(frame[0]),
-            true => Err(unanswered(format!("the answer is one of function {}, and not {}", frame[1], self.request[0]))),
+            true => Err(unanswered(format!("the answer is for function {}, not {}", frame[1], self.request[0]))),
             false => Err(damaged("bytes on the line do not form a frame")),
         }
     }

@@ -71,7 +71,7 @@ impl Writer<'_> {
             Special::Inputs => condition,
             Special::Label => {
                 if !self.text.text[..it.place.start].trim().is_empty() {
-                    self.wrong(Trouble::Odd, "a label is at the beginning of its rung".to_owned(), &it.place);
+                    self.wrong(Trouble::Odd, "a label must be at the beginning of its rung".to_owned(), &it.place);
                 }
                 condition
             }

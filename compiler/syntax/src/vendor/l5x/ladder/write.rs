@@ -97,13 +97,12 @@ impl Writer<'_> {
             self.out.chunks.push(words);
         }
         if let Some(edit) = &self.text.edit {
-            let message =
-                format!("it is an edit that is not finished (type {edit}): finish it, and export the file again");
+            let message = format!("this is an unfinished edit (type {edit}): finish it, and export the file again");
             self.wrong(Trouble::NotSupported, message, &whole);
         }
         if let Some(label) = jump::label(self.text, path) {
             if self.parts.number(&label) != Some(self.part + 1) {
-                self.wrong(Trouble::Odd, format!("the label `{label}` is there already"), &whole);
+                self.wrong(Trouble::Odd, format!("the label `{label}` already exists"), &whole);
             }
             self.part += 1;
             self.between_parts(Parts::next);

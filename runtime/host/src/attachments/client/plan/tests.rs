@@ -90,7 +90,7 @@ fn mistakes_say_what_to_write() {
     let cases = [
         (("v0", "register 3"), "input-register and holding-register"),
         (("v0", "input-register 65536"), "from 0 to 65535"),
-        (("v0", "coil 3.1"), "no place at a server"),
+        (("v0", "coil 3.1"), "not a place at a server"),
         (("v1", "input-register 65533"), "ends after number 65535"),
         (("v0", "coil 3"), "more bits than one"),
         (("v3", "input-register 3"), "name one, as in \"input-register 3.0\""),
