@@ -88,7 +88,7 @@ fn of_file(case: &str, text: &str, options: &Options, before: &str, wrong: &mut 
         match editor.try_ask("textDocument/rename", params) {
             // What has its meaning by its name, or is a library's, stays.
             Err(why)
-                if why.contains("by its name")
+                if why.contains("has a fixed meaning")
                     || why.contains("is not a name")
                     || why.contains("not a part of the file") =>
             {

@@ -7,8 +7,8 @@ use crate::debug::noted::Noted;
 use crate::module::{ModuleEmitter, Workspace};
 use crate::scan::{Begun, start_of_scan};
 use crate::seen::Seen;
-use crate::signature::{POINTER, clif_type, result_type};
-use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot};
+use crate::signature::{POINTER, ROUTINES, clif_type, result_type};
+use cranelift_codegen::ir::{self as clif, InstBuilder, StackSlot, UserFuncName};
 use cranelift_frontend::{FuncInstBuilder, FunctionBuilder, Variable};
 use cranelift_module::{DataId, FuncId};
 use rustc_hash::FxHashMap;
@@ -173,6 +173,8 @@ pub(crate) fn emit(module: &mut ModuleEmitter<'_>, workspace: &mut Workspace, id
     let routine = module.program.routine(id);
     let context = &mut workspace.context;
     context.func.signature = module.signature(id);
+    // Its own number in the listing; the one of its function follows.
+    context.func.name = UserFuncName::user(ROUTINES, id.0);
     let builder = FunctionBuilder::new(&mut context.func, &mut workspace.builder);
     let mut effects = module.effects(id).clone();
     // A scan returns a code also where nothing can fault.

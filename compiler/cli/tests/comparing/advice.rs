@@ -310,7 +310,7 @@ fn a_called_program_and_a_list_of_globals_say_what_to_write_elsewhere() {
     assert_eq!(refused.status.code(), Some(1), "{text}");
     assert!(text.contains("What to do: Change it as the message says.\n"), "{text}");
     assert!(text.contains("write it as FUNCTION_BLOCK Sub … END_FUNCTION_BLOCK, declare an instance of it"), "{text}");
-    assert!(text.contains("write the variable without `Plant.`"), "{text}");
+    assert!(text.contains("write its variables without `Plant.`"), "{text}");
     equal("a called PROGRAM", "codesys", "iec", "full,n", [&original, &moved]);
 
     let png = alone(&["--trace", "picture.png"]);

@@ -55,7 +55,7 @@ END_PROGRAM
 #[test]
 fn what_a_call_is_on_openplc_is_not_equal() {
     let one_by_one = "inputs are assigned one by one";
-    let right_first = "the right side is evaluated first";
+    let right_first = "the right operand and the last argument are evaluated first";
     let asked = [
         ("read", "openplc", "x(a := n, b := x.a); q := x.o;", one_by_one),
         ("read", "openplc4", "x(a := n, b := x.a); q := x.o;", one_by_one),
@@ -88,8 +88,8 @@ fn what_a_call_is_on_openplc_is_not_equal() {
             "d(IN := on, PT := T#1s); IF d.ET / 3.0 * 3.0 = d.ET THEN q := n; END_IF;",
             "it is a double",
         ),
-        ("named", "openplc4", "i := n; y(a := 1, v := i); q := y.M(d := 1, c := n);", "the names are passed over"),
-        ("left_out", "openplc4", "i := n; y(a := 1, v := i); q := y.M(d := 1);", "the names are passed over"),
+        ("named", "openplc4", "i := n; y(a := 1, v := i); q := y.M(d := 1, c := n);", "the names are ignored"),
+        ("left_out", "openplc4", "i := n; y(a := 1, v := i); q := y.M(d := 1);", "the names are ignored"),
         ("position", "openplc4", "i := n; y(1, i); q := i;", "only inputs are counted"),
         ("literals", "openplc4", "IF 'ab' < 'abc' THEN q := n; END_IF;", "C++ compares addresses"),
         ("twice", "openplc", "i := n; q := Both(i, i);", "it is copied in before the call"),

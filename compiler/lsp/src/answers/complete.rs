@@ -32,9 +32,10 @@ pub fn complete(project: &mut Project, documents: &Documents, path: &Path, posit
     if is_aside(source, place(&sources, file, position)) {
         return Vec::new();
     }
+    let before = &document[..start];
     // A comment may end with a point.
-    let before = lex(file, &document[..start]).kinds;
-    let is_member = before.iter().rev().find(|it| **it != Kind::End) == Some(&Kind::Dot);
+    let last = || lex(file, before).kinds.into_iter().rev().find(|it| *it != Kind::End);
+    let is_member = before.trim_end().ends_with('.') && last() == Some(Kind::Dot);
     let label = if may_be_label(document, start) { LABEL } else { "" };
     let text = with_name(document, start, at, label);
     let length = count(label.len()) + 1;

@@ -79,7 +79,7 @@ fn address<'a>(analysis: &'a Analysis, definition: &Definition) -> Option<&'a st
     let between = staunch_frontend::Span { start: definition.name.end, end: definition.ty?.start, ..definition.name };
     let text = analysis.text(between);
     let address = text.get(text.find('%')?..)?;
-    Some(address.split(|it: char| it == ':' || it.is_whitespace()).next()?)
+    address.split(|it: char| it == ':' || it.is_whitespace()).next()
 }
 
 /// What is after `:=` in a declaration.
