@@ -324,6 +324,10 @@ impl<'t> Table<'t> {
     fn finds(&self, mut found: Option<Found>, offset: usize, wanted: Wanted) -> bool {
         while let Some(at) = found {
             let index = offset - at.start;
+            // Only what has no bytes may be where another part ends.
+            if index >= at.node.size && at.node.size > 0 && !matches!(at.node.kind, encode::STRUCTURE) {
+                return false;
+            }
             let is_it = match (at.node.kind, wanted) {
                 (encode::NUMBERS | encode::TRUTHS, Wanted::Repr(repr)) => {
                     at.node.first == encode::repr(repr) && index.checked_rem(repr.size() as usize) == Some(0)
