@@ -518,3 +518,28 @@ fn a_file_that_cannot_be_read_leaves_the_others_answered() {
     let said = editor.ask("textDocument/diagnostic", json!({ "textDocument": { "uri": uri("main.st") } }));
     assert!(said.to_string().contains("FB.TcPOU"), "{said}");
 }
+
+#[test]
+fn functions_of_one_name_are_renamed_together() {
+    let text = "\
+FUNCTION K : DINT
+VAR_INPUT x : INT; END_VAR
+K := 1;
+END_FUNCTION
+FUNCTION K : DINT
+VAR_INPUT x : LINT; END_VAR
+K := 2;
+END_FUNCTION
+PROGRAM Main
+VAR u : UDINT; i : INT; a, b : DINT; END_VAR
+a := K(i);
+b := K(u);
+END_PROGRAM
+";
+    let mut editor = Editor::open(Dialect::Iec, &[("main.st", text)]);
+    let mut params = place("main.st", of(text, "K :", 1));
+    params["newName"] = json!("Scaled");
+    let edit = editor.ask("textDocument/rename", params);
+    let renamed = edited(text, &edit["changes"][uri("main.st")]);
+    assert!(renamed.contains("a := Scaled(i);\nb := Scaled(u);") && !renamed.contains("K"), "{renamed}");
+}

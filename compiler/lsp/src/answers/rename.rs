@@ -33,7 +33,8 @@ fn renamable(analysis: &Analysis, place: Place) -> Result<DefId, String> {
     if analysis.source(definition.name.file).is_assembled() && is_of_the_file(definition.kind) {
         return Err(format!("`{name}` is the name of an object of its file, too: rename it in the original system"));
     }
-    match family(analysis, id).into_iter().find(|it| !analysis.is_own(analysis.index.get(*it).name)) {
+    let all = overloads(analysis, id).into_iter().flat_map(|it| family(analysis, it));
+    match all.into_iter().find(|it| !analysis.is_own(analysis.index.get(*it).name)) {
         Some(_) => Err(format!("`{name}` is declared in a library, or where the text is not a part of the file")),
         None => Ok(id),
     }
@@ -55,7 +56,9 @@ pub fn rename(
     if !is_name(new) {
         return Err(format!("`{new}` is not a name"));
     }
-    let places = mentions(analysis, id, true);
+    let mut places: Vec<_> = overloads(analysis, id).into_iter().flat_map(|it| mentions(analysis, it, true)).collect();
+    places.sort_unstable_by_key(|it| (it.file, it.start));
+    places.dedup();
     if places.iter().any(|it| !analysis.is_own(*it)) {
         return Err(format!("`{old}` is used where the text is not a part of the file"));
     }
@@ -76,6 +79,17 @@ pub fn rename(
         return Err(format!("`{new}` means something else at a place where `{old}` is used, or the other way round"));
     }
     Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })
+}
+
+/// A FUNCTION, with the others of its name: by the arguments of a call, it may mean another one than the editor shows.
+fn overloads(analysis: &Analysis, id: DefId) -> Vec<DefId> {
+    let is_function = |id: DefId| analysis.index.get(id).kind == DefinitionKind::Function;
+    if !is_function(id) {
+        return vec![id];
+    }
+    let name = analysis.name(id);
+    let alike = analysis.index.ids().map(|it| it.0).filter(|it| is_function(*it));
+    alike.filter(|it| analysis.name(*it).eq_ignore_ascii_case(name)).collect()
 }
 
 /// Names by which a system calls a METHOD, or gives a value.
