@@ -98,8 +98,8 @@ impl Function<'_, '_> {
     pub(crate) fn writing(&mut self, to: Address) -> MemFlagsData {
         match to.kind {
             Kind::Class(_) => self.known_in = None,
-            // The code generator takes it for a store to anything. But it takes for granted that what is there is still what the
-            // last store of no class has left: stores of a class since then have to be seen.
+            // The code generator takes it for a store to anything. But it assumes that the value there is still that of the
+            // last store without a class: stores with a class since then need a fence.
             Kind::Any => self.read_any(),
             Kind::Own => self.known_in = self.builder.current_block(),
         }

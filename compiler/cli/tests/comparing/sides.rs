@@ -242,11 +242,12 @@ fn lists_and_open_addresses_of_codesys_move() {
             "{{gvl 'Plant'}}\nVAR_GLOBAL\n    start AT %{address} : BOOL;\n    total : INT;\n    parts : CTU;\nEND_VAR\n\
              PROGRAM Main\nVAR\n    own : INT;\nEND_VAR\n\
              Plant.parts(CU := Plant.start, PV := 3);\nIF Plant.parts.Q THEN\n    Plant.total := Plant.total + 1;\nEND_IF\n\
-             own := Plant.total;\nEND_PROGRAM\n"
+             IF Plant.parts.CV > 3 THEN\n    own := 1;\nEND_IF\nEND_PROGRAM\n"
         )
     };
     std::fs::write(folder.join("open.st"), program("I*")).expect("a program");
     std::fs::write(folder.join("bound.st"), program("IX0.0")).expect("a program");
+    std::fs::write(folder.join("no_run.txt"), "no run\n").expect("assumptions");
     let compared = |arguments: &str| {
         command().args(arguments.split_whitespace()).current_dir(&folder).output().expect("the command starts")
     };
@@ -255,6 +256,14 @@ fn lists_and_open_addresses_of_codesys_move() {
         let lints = text(&output.stderr);
         assert!(matches!(output.status.code(), Some(1 | 4)), "{to}: {lints}");
         assert!(lints.contains("W0617") && lints.contains("W0618"), "{to}: {lints}");
+    }
+    // What the devices' configuration gives is an input on both sides: the count passes PV in CODESYS alone.
+    for name in ["open", "bound"] {
+        let output =
+            compared(&format!("{name}.st --from codesys --to cscape --assume no_run.txt --vars own --budget 20000"));
+        let out = text(&output.stdout);
+        assert_eq!(output.status.code(), Some(1), "{name}: {out}");
+        assert!(out.starts_with("codesys and cscape differ after 7 scans:\n"), "{name}: {out}");
     }
     let output = compared("bound.st --from codesys --to iec --budget 2000 --write moved.st");
     assert!(matches!(output.status.code(), Some(1 | 4)), "{}", text(&output.stderr));

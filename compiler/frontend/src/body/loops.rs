@@ -197,7 +197,7 @@ impl<'s> Checker<'_, 's> {
         let range = self.decl.program.range(place.ty).or(ty.repr().range())?;
         let step_at = self.at(by.unwrap_or(counter).span);
         self.note_endless(&step, calls.wide_limit.as_ref().unwrap_or(&last), range, (to, ty));
-        self.note_never(&first, &last, &step, from.span.to(to.span));
+        self.note_never(&first, &last, &step, [from.span, to.span]);
         let (body, taking) = (Block::new(), Taking::Each);
         let head = For { counter: place, first, last, step, range, is_private: false, body, taking, step_at };
         Some((head, shown, calls))
@@ -223,18 +223,23 @@ impl<'s> Checker<'_, 's> {
     }
 
     /// Reports a FOR between constants that takes no turn.
-    fn note_never(&mut self, first: &Expr, last: &Expr, step: &Step, span: Span) {
+    fn note_never(&mut self, first: &Expr, last: &Expr, step: &Step, [start, end]: [Span; 2]) {
         let constant = |it: &Expr| it.as_const().and_then(Value::as_integer);
         let (Some(from), Some(to), Step::Constant(step)) = (constant(first), constant(last), step) else { return };
-        let (is_up, beyond) = (*step > 0, if *step > 0 { from > to } else { from < to });
-        if beyond {
-            let lint = Diagnostic::new(Code::W0532, span, "this loop takes no turn")
-                .label(format!("from {from} to {to} in steps of {step}"));
-            self.report(match is_up {
-                true => lint.help(format!("to count down, write `{from} TO {to} BY -{step}`")),
-                false => lint.help(format!("to count up, write `{from} TO {to} BY {}`", -step)),
-            });
+        let is_up = *step > 0;
+        if is_up && from <= to || !is_up && from >= to {
+            return;
         }
+        let lint = Diagnostic::new(Code::W0532, start.to(end), "this loop takes no turn")
+            .label(format!("from {from} to {to} in steps of {step}"));
+        let text = |it: Span| self.decl.log.sources.text(it);
+        let is_number = |it: Span| !text(it).contains(|it: char| it.is_ascii_alphabetic());
+        // A named constant may have another value one day, and the other direction is not meant.
+        self.report(match (is_up, is_number(start) && is_number(end)) {
+            (_, false) => lint,
+            (true, true) => lint.help(format!("to count down, write `{from} TO {to} BY -{step}`")),
+            (false, true) => lint.help(format!("to count up, write `{from} TO {to} BY {}`", -step)),
+        });
     }
 
     /// Notes a FOR whose counter may have no value beyond its limit: it ends here, and not where it wraps. Of one that has

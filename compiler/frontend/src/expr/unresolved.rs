@@ -315,7 +315,7 @@ impl<'s> Checker<'_, 's> {
         self.report(error);
     }
 
-    /// The one enumerator that begins with the name, where nothing that begins alike is nearer: `Drain` of `Draining`.
+    /// The one enumerator that begins with the name, if no nearer name has the same first letter: `Draining` for `Drain`.
     fn enumerator_of_beginning(&self, name: ast::Name<'s>, near: Option<&str>) -> Option<&'s str> {
         let begins = |long: &str, start: &str| long.get(..start.len()).is_some_and(|it| it.eq_ignore_ascii_case(start));
         let first = name.text.get(..1)?;

@@ -11,9 +11,9 @@
 //! It applies to a FOR from a constant to a constant, whose counter nothing else writes, that moves the pointer once in each turn
 //! by a constant: a multiple of what goes from element to element. The pointer has been given the address of an element, or of the array,
 //! before, and no reference leads to it. All elements that the loop may look at are within the array. So no such access can fault,
-//! which is no less than the object that references name: that is a whole variable. The pointer is moved behind the loop where
+//! which is no less than the object that references name: that is a whole variable. The pointer is moved after the loop if
 //! nothing in it looks at the pointer and nothing can leave it, by a fault or otherwise. Three kinds stay as they are: a loop with a
-//! CONTINUE, which may leave the pointer behind the counter; one that takes the address of what the pointer leads to, which is no fault
+//! CONTINUE, after which the pointer may lag the counter; one that takes the address of what the pointer leads to, which does not fault
 //! beyond the array either; and all loops in a program with pools, since what is in one may be deleted.
 
 use crate::alias::{Frame, changes};
@@ -76,7 +76,7 @@ impl Walker<'_> {
         }
     }
 
-    /// Replaces what a loop follows of the pointer that this statement gives a value; what is to come behind it, and where.
+    /// Replaces what a loop follows of the pointer that this statement gives a value; what is to follow the loop, and where.
     fn replace(&mut self, block: &mut Block, at: usize) -> Option<(usize, Statement)> {
         let start = self.start(&block[at])?;
         let frame = Frame::of(self.program, self.routine);
@@ -250,7 +250,7 @@ fn has_continue(body: &[Statement]) -> bool {
     found
 }
 
-/// Whether the address of what the pointer leads to is taken, which is no fault behind the array either.
+/// Whether the address of what the pointer leads to is taken, which does not fault past the end of the array either.
 fn takes_address(body: &[Statement], pointer: &Place) -> bool {
     let mut found = false;
     visit::statements(body, &mut |it| {

@@ -81,7 +81,7 @@ pub fn rename(
     Ok(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() })
 }
 
-/// A FUNCTION, with the others of its name: by the arguments of a call, it may mean another one than the editor shows.
+/// A FUNCTION, with all that have the same name: the arguments of a call decide which one it means.
 fn overloads(analysis: &Analysis, id: DefId) -> Vec<DefId> {
     let is_function = |id: DefId| analysis.index.get(id).kind == DefinitionKind::Function;
     if !is_function(id) {

@@ -79,7 +79,7 @@ pub fn help(analysis: &Analysis, place: Place) -> Option<SignatureHelp> {
     help_by(analysis, analysis, place)
 }
 
-/// The file with the call around a place without its arguments, as a statement: one that is being typed is no expression yet.
+/// The file with the call around a place without its arguments, as a statement: a call that is being typed is not yet an expression.
 pub fn closed(analysis: &Analysis, place: Place) -> Option<String> {
     let source = analysis.source(place.file);
     let calls = calls(place.file, &source.text);

@@ -20,7 +20,7 @@ pub fn check_safe(map: &Map) -> Result<(), (usize, String)> {
     Ok(())
 }
 
-/// The values at addresses, outputs with their safe values. What is wrong with one of these is said by [`check_safe`].
+/// The values at addresses, outputs with their safe values. [`check_safe`] reports mistakes in them.
 pub(super) fn points_of(map: &Map) -> Points {
     let mut points = Points::of(map);
     let stated: Vec<Write> =

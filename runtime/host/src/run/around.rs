@@ -28,7 +28,7 @@ pub(super) const AROUND: [Step; 7] =
     [Step::Stimulus, Step::Inputs, Step::Programs, Step::Outputs, Step::Messages, Step::Retained, Step::Trace];
 
 impl Step {
-    /// What a program has logged before its fault is told. Outputs, what is kept and the trace have nothing of a scan that was not whole.
+    /// Messages that a program has logged before its fault are shown. Outputs, retained variables and the trace show nothing of an incomplete scan.
     pub fn is_after_a_fault(self) -> bool {
         match self {
             Self::Messages => true,

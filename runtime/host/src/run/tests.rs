@@ -280,7 +280,7 @@ fn scans_in_real_time_neither_allocate_nor_wait_for_memory() {
     let _ = std::fs::remove_file(format!("/dev/shm/{shared}"));
 }
 
-/// What a machine is told, in the order in which it comes.
+/// The calls that a machine gets, in their order.
 #[derive(Debug)]
 struct Told {
     garage: Garage,
